@@ -8,8 +8,12 @@ pub use none::gpu;
 #[cfg(feature = "gpu")]
 mod device {
     use std::sync::OnceLock;
+    use std::time::Duration;
 
-    use raydsl::gpu::GpuScheduler;
+    use raydsl::gpu::{Context, GpuScheduler};
+
+    /// A driver for CPUs compiles at the first dispatch, and beside other tests.
+    const TIMEOUT: Duration = Duration::from_secs(300);
 
     /// The scheduler of this machine's adapter, or `None` after saying so loudly.
     ///
@@ -19,10 +23,10 @@ mod device {
     #[must_use = "a test that needs a device must return without one"]
     pub fn gpu() -> Option<&'static GpuScheduler> {
         static GPU: OnceLock<Option<GpuScheduler>> = OnceLock::new();
-        GPU.get_or_init(|| match GpuScheduler::new() {
-            Ok(gpu) => {
-                eprintln!("GPU adapter: {}", gpu.context().adapter_name());
-                Some(gpu)
+        GPU.get_or_init(|| match Context::new() {
+            Ok(context) => {
+                eprintln!("GPU adapter: {}", context.adapter_name());
+                Some(GpuScheduler::with_context(context.with_timeout(TIMEOUT)))
             }
             Err(error) => {
                 let required = std::env::var("RAYDSL_REQUIRE_GPU").is_ok_and(|v| v == "1");

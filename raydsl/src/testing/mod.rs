@@ -81,9 +81,14 @@ fn missing_device(test: &str, error: &str) -> bool {
 /// Returns the device of this process' tests, or why there is none.
 #[cfg(all(feature = "gpu", not(target_family = "wasm")))]
 fn shared() -> Result<&'static crate::gpu::GpuScheduler, &'static str> {
-    use crate::gpu::GpuScheduler;
+    use crate::gpu::{Context, GpuScheduler};
+    // A driver for CPUs compiles at the first dispatch, and beside other tests.
+    const TIMEOUT: std::time::Duration = std::time::Duration::from_secs(300);
     static GPU: std::sync::OnceLock<Result<GpuScheduler, String>> = std::sync::OnceLock::new();
-    let gpu = GPU.get_or_init(|| GpuScheduler::new().map_err(|e| e.to_string()));
+    let gpu = GPU.get_or_init(|| {
+        let context = Context::new().map_err(|e| e.to_string())?;
+        Ok(GpuScheduler::with_context(context.with_timeout(TIMEOUT)))
+    });
     gpu.as_ref().map_err(String::as_str)
 }
 
