@@ -8,7 +8,7 @@ use raydsl::machine::{KernelFn, KernelInfo, Lanes, One, Packet, Rounding, Scalar
 use raydsl::prelude::Renderer;
 use raydsl::testing::{Cause, explain};
 
-use crate::gpu::gpu;
+use crate::gpu::{gpu, keeps_denormals};
 use crate::levels::{LevelTask, each_level_padded, gangs, widest_level};
 use crate::rng::Rng;
 use crate::scaled;
@@ -81,7 +81,8 @@ pub fn wgsl_agrees<A: Type + Debug + Sync, R: Type>(
         Wgsl::Ulps(ulps) => ulps,
         Wgsl::Explained => return assert_explained(name, kernel, &inputs, &found),
     };
-    let result = compare_within(format!("{name} in WGSL"), ulps, &expected, &found);
+    let result =
+        compare_within(format!("{name} in WGSL"), ulps, keeps_denormals(gpu), &expected, &found);
     if result.count() > 0 {
         println!("{}", kernel.wgsl());
     }

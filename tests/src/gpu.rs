@@ -1,9 +1,9 @@
 //! The device of the tests.
 
 #[cfg(feature = "gpu")]
-pub use device::gpu;
+pub use device::{gpu, keeps_denormals};
 #[cfg(not(feature = "gpu"))]
-pub use none::gpu;
+pub use none::{gpu, keeps_denormals};
 
 #[cfg(feature = "gpu")]
 mod device {
@@ -36,6 +36,11 @@ mod device {
             }
         })
         .as_ref()
+    }
+
+    /// Whether a device keeps denormals: one that is a CPU does, and cards may take them for 0.
+    pub fn keeps_denormals(gpu: &GpuScheduler) -> bool {
+        gpu.context().adapter_info().device_type == wgpu::DeviceType::Cpu
     }
 }
 
@@ -71,5 +76,10 @@ mod none {
         static SAID: std::sync::Once = std::sync::Once::new();
         SAID.call_once(|| eprintln!("SKIPPED: these tests were built without the feature `gpu`"));
         None
+    }
+
+    /// Never called.
+    pub fn keeps_denormals(device: &Device) -> bool {
+        match *device {}
     }
 }

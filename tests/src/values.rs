@@ -270,32 +270,32 @@ fn compare_bytes(who: String, schema: &Schema, count: usize, write: Write<'_>) -
     Comparison { who, compared: count, differing }
 }
 
-/// Compares results, of which floats may be `ulps` apart. Denormals may be zeros, as on many GPUs, also
-/// where they are terms of a sum.
+/// Compares results, of which floats may be `ulps` apart; denormals are zeros, as on many GPUs, and unless
+/// `keeps_denormals` so are those that are terms of a sum.
 pub fn compare_within<T: Type>(
     who: impl Into<String>,
     ulps: u32,
+    keeps_denormals: bool,
     expected: &[T],
     found: &[T],
 ) -> Comparison {
     let mut all = compare(who, expected, found);
-    all.allow(ulps, &are_floats(T::SCHEMA));
+    let is_near = |a: u32, b: u32| {
+        let lost = (f32::from_bits(a) - f32::from_bits(b)).abs();
+        distance(a, b) <= ulps || !keeps_denormals && lost < f32::MIN_POSITIVE
+    };
+    all.allow(is_near, &are_floats(T::SCHEMA));
     all
 }
 
-/// How many floats lie from one to the other, of which none counts that is within a denormal; a NaN is far
-/// from all others.
+/// How many floats lie from one to the other; a NaN is far from all others.
 fn distance(a: u32, b: u32) -> u32 {
     let place = |bits: u32| {
         let size = ((bits & 0x7fff_ffff) as i32 - 0x007f_ffff).max(0);
         if bits >> 31 == 0 { size } else { -size }
     };
-    let (x, y) = (f32::from_bits(a), f32::from_bits(b));
-    if x.is_nan() || y.is_nan() {
+    if f32::from_bits(a).is_nan() || f32::from_bits(b).is_nan() {
         return u32::MAX;
-    }
-    if (x - y).abs() < f32::MIN_POSITIVE {
-        return 0;
     }
     place(a).abs_diff(place(b))
 }
@@ -306,13 +306,12 @@ impl Comparison {
         self.differing.len()
     }
 
-    /// Forgets results whose floats are at most `ulps` apart, and all else equal.
-    fn allow(&mut self, ulps: u32, are_floats: &[bool]) {
+    /// Forgets results whose floats are near each other, and all else equal.
+    fn allow(&mut self, is_near: impl Fn(u32, u32) -> bool, are_floats: &[bool]) {
         self.differing.retain(|(i, e, f)| {
             assert_eq!(are_floats.len(), e.len(), "one word for each leaf of result {i}");
-            let near = |(k, is_float): (usize, &bool)| {
-                e[k] == f[k] || *is_float && distance(e[k], f[k]) <= ulps
-            };
+            let near =
+                |(k, is_float): (usize, &bool)| e[k] == f[k] || *is_float && is_near(e[k], f[k]);
             !are_floats.iter().enumerate().all(near)
         });
     }

@@ -24,7 +24,7 @@ fn number(name: &str, default: u64) -> u64 {
 #[test]
 fn random_kernels_agree() {
     let seed = number("RAYDSL_FUZZ_SEED", 1);
-    let count = number("RAYDSL_FUZZ_KERNELS", 150) as usize;
+    let count = number("RAYDSL_FUZZ_KERNELS", 300) as usize;
     let shrunk = number("RAYDSL_FUZZ_SHRUNK", 3) as usize;
     let scratch = Path::new(env!("CARGO_TARGET_TMPDIR"));
     let target = scratch.parent().expect("the scratch folder lies in the target folder");

@@ -6,7 +6,7 @@ use raydsl::prelude::*;
 use raydsl::testing;
 use raydsl::volume::cells::{CellKind, CellMesh, CellVectors};
 use raydsl::volume::{GridConfig, VectorGrid};
-use raydsl_tests::gpu::gpu;
+use raydsl_tests::gpu::{gpu, keeps_denormals};
 use raydsl_tests::rng::Rng;
 
 use super::fields::{Field, velocity};
@@ -32,6 +32,9 @@ fn assert_lines_agree(
         let found = streamlines(gpu, kernel, seeds, Ways::Both).expect("a device that runs it");
         if gpu.context().is_exact() {
             assert_eq!(found.len(), expected.len());
+            if keeps_denormals(gpu) {
+                assert_eq!(found, expected, "WGSL");
+            }
             found.iter().zip(&expected).for_each(|(a, b)| assert_same(a, b));
         } else {
             assert_eq!(found.len(), expected.len());
