@@ -2,15 +2,15 @@
 //!
 //! The tests are split by the kind of evidence that they give: `variants` (every variant of small
 //! kernels agrees with the untouched source), `glam` (so does every operation), `rays` and `edges`
-//! (queries of scenes), `images`, `gpu`, `layout`, `unorm`, `elementary`, `fuzz`
-//! (random kernels), `robustness` (many rays at what is hard), `adversary` (scenes made of bytes).
+//! (queries of scenes), `images`, `gpu`, `layout`, `unorm`, `elementary`, `fuzz` (random kernels),
+//! `campaign` (very many inputs at what is hard), `adversary` (scenes made of bytes).
 
 pub mod adversary;
-pub mod campaigns;
 pub mod check;
 pub mod close;
 pub mod fuzz;
 pub mod gpu;
+pub mod hard_rays;
 pub mod kernels;
 pub mod lattice;
 pub mod levels;

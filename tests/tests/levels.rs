@@ -4,7 +4,7 @@
 //! lane is a call, which is slow.
 
 use raydsl::prelude::*;
-use raydsl_tests::campaigns::slabs;
+use raydsl_tests::hard_rays::boxes;
 use raydsl_tests::queries::{scalar_answers, slice_view};
 use raydsl_tests::scaled;
 use raydsl_tests::scenes::{broken_rays, random_rays};
@@ -38,8 +38,8 @@ macro_rules! levels {
 /// Rays at boxes where a box test is easily wrong.
 #[test]
 fn boxes() -> Result<(), raydsl::bvh::BuildError> {
-    for row in &slabs::ROWS {
-        for (marks, answers) in slabs::answers(row, scaled(RAYS_OF_BOXES)) {
+    for row in &boxes::ROWS {
+        for (marks, answers) in boxes::answers(row, scaled(RAYS_OF_BOXES)) {
             let bvh = Bvh::build(&marks)?;
             answers.assert_levels(row.name, bvh.view());
             answers.assert_gangs(row.name, bvh.view());

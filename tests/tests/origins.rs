@@ -4,8 +4,8 @@
 use raydsl::assert_variants_agree;
 use raydsl::kernel;
 use raydsl::prelude::*;
-use raydsl_tests::campaigns::bounces::{Ball, from_frame, local};
-use raydsl_tests::campaigns::mesh::Icosphere;
+use raydsl_tests::hard_rays::bounces::{Ball, from_frame, local};
+use raydsl_tests::hard_rays::mesh::Icosphere;
 use raydsl_tests::rng::Rng;
 use raydsl_tests::scaled;
 

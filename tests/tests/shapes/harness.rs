@@ -2,7 +2,7 @@
 
 use raydsl::machine::{Lanes, Packet, Type as _};
 use raydsl::prelude::*;
-use raydsl_tests::campaigns::bounces::{from_frame, local};
+use raydsl_tests::hard_rays::bounces::{from_frame, local};
 use raydsl_tests::levels::{LevelTask, each_level};
 use raydsl_tests::queries::hit_words;
 use raydsl_tests::rng::Rng;

@@ -4,10 +4,8 @@
 //! the tests of all boxes above it let the ray through. Which rays must get there is decided in
 //! `f64`, for numbers with which that is exact.
 
-use raydsl::bvh::BuildError;
 use raydsl::prelude::*;
 
-use super::{Asked, TEXTBOOK, Tally};
 use crate::queries::Answers;
 use crate::rng::Rng;
 
@@ -71,7 +69,7 @@ impl Mark {
 
 /// A way to make boxes, and rays at one of them.
 pub struct Row {
-    /// For the table.
+    /// In words.
     pub name: &'static str,
     bounds: fn(&mut Rng) -> (Vec3, Vec3),
     ray: fn(&mut Rng, &Mark) -> (Vec3, Vec3),
@@ -79,7 +77,7 @@ pub struct Row {
 
 /// What breaks other box tests.
 pub const ROWS: [Row; 5] = [
-    Row { name: "along an axis, from a plane of a face, with ±0", bounds: any_box, ray: along },
+    Row { name: "along an axis, from a face, with ±0", bounds: any_box, ray: along },
     Row { name: "flat boxes, in their plane", bounds: flat_box, ray: in_plane },
     Row { name: "components from 1e-9 to 1e-6", bounds: any_box, ray: nearly_along },
     Row { name: "through edges and corners", bounds: whole_box, ray: at_seam },
@@ -87,7 +85,7 @@ pub const ROWS: [Row; 5] = [
 ];
 
 /// Every row is done at these sizes: powers of two near 1e-15, 1e-8, 1, 1e8 and 1e15.
-const EXPONENTS: [i32; 5] = [-50, -27, 0, 27, 50];
+pub const EXPONENTS: [i32; 5] = [-50, -27, 0, 27, 50];
 
 /// Boxes of one tree: few, so that it is small and boxes are widened by little.
 const MARKS: usize = 6;
@@ -193,8 +191,8 @@ fn at_seam(rng: &mut Rng, mark: &Mark) -> (Vec3, Vec3) {
     (at - d * rng.pick(&[0.5, 1.0, 4.0, 16.0]), d)
 }
 
-/// A ray that must reach its mark.
-fn ray(rng: &mut Rng, row: &Row, marks: &[Mark], scale: f32) -> Ray {
+/// A ray that must reach the mark that it names, where boxes are multiplied by `scale`.
+pub fn ray(rng: &mut Rng, row: &Row, marks: &[Mark], scale: f32) -> Ray {
     loop {
         let mark = &marks[rng.below(marks.len())];
         let (origin, d) = (row.ray)(rng, mark);
@@ -208,7 +206,8 @@ fn ray(rng: &mut Rng, row: &Row, marks: &[Mark], scale: f32) -> Ray {
 
 /// What textbooks test, in IEEE arithmetic and with nothing allowed for rounding: `1 / 0` is
 /// infinite, and what is not a number is passed over.
-fn textbook(mark: &Mark, scale: f32, ray: &Ray) -> bool {
+pub fn textbook(marks: &[Mark], scale: f32, ray: &Ray) -> bool {
+    let mark = &marks[id_of(ray) as usize];
     let inverse = ray.direction.recip();
     let a = (mark.min * scale - ray.origin) * inverse;
     let b = (mark.max * scale - ray.origin) * inverse;
@@ -216,19 +215,8 @@ fn textbook(mark: &Mark, scale: f32, ray: &Ray) -> bool {
     near <= a.max(b).min_element().min(ray.t_max)
 }
 
-/// How many of `count` rays the textbook's test loses, without a tree.
-fn lost_by_textbook(row: &Row, marks: &[Mark], scale: f32, count: usize) -> Asked {
-    let mut rng = Rng::of(row.name);
-    let is_lost = |_: &usize| {
-        let ray = ray(&mut rng, row, marks, scale);
-        !textbook(&marks[id_of(&ray) as usize], scale, &ray)
-    };
-    let lost = (0..count).filter(is_lost).count() as u64;
-    Asked { who: TEXTBOOK.to_owned(), rays: count as u64, lost }
-}
-
-/// The boxes of a tree.
-fn marks(row: &Row, seed: u64) -> Vec<Mark> {
+/// The boxes of a tree, before they are multiplied by a scale.
+pub fn marks(row: &Row, seed: u64) -> Vec<Mark> {
     let mut rng = Rng::new(seed);
     let mark = |id| {
         let (min, max) = (row.bounds)(&mut rng);
@@ -257,39 +245,6 @@ fn id_of(ray: &Ray) -> u32 {
 }
 
 /// The same boxes, smaller or larger.
-fn at_scale(marks: &[Mark], scale: f32) -> Vec<Mark> {
+pub fn at_scale(marks: &[Mark], scale: f32) -> Vec<Mark> {
     marks.iter().map(|m| Mark { min: m.min * scale, max: m.max * scale, ..*m }).collect()
-}
-
-/// Asks every natural variant about `count` rays of a row, and WGSL about `wgsl`.
-///
-/// # Errors
-///
-/// None: the boxes are finite.
-pub fn campaign(row: &Row, count: usize, wgsl: usize) -> Result<Tally, BuildError> {
-    const TREES: u64 = 16;
-    let mut tally = Tally::new(row.name);
-    let share = |count: usize| count / (EXPONENTS.len() * TREES as usize);
-    for exponent in EXPONENTS {
-        let scale = 2.0f32.powi(exponent);
-        for seed in 0..TREES {
-            let marks = marks(row, seed);
-            let scene = at_scale(&marks, scale);
-            let bvh = Bvh::build(&scene)?;
-            let kernels = [
-                kernel!(|ray: Ray| bvh.closest_hit(ray).is_hit),
-                kernel!(|ray: Ray| bvh.any_hit(ray)),
-            ];
-            let mut part = Tally::new(format!("{}, 2^{exponent}, {seed}", row.name));
-            let ray = |rng: &mut Rng| ray(rng, row, &marks, scale);
-            part.cpu(&kernels, share(count), &ray);
-            // One tree at each size: another one is sent to the device, and asked little.
-            if seed == 0 {
-                part.wgsl(&kernels, share(wgsl * TREES as usize), &ray);
-            }
-            part.others.push(lost_by_textbook(row, &marks, scale, share(count / 100)));
-            tally.add(part);
-        }
-    }
-    Ok(tally)
 }

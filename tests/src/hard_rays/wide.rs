@@ -2,32 +2,37 @@
 
 use raydsl::prelude::{Ray, Triangle, Vec3};
 
-pub(super) type D3 = [f64; 3];
+/// Three coordinates.
+pub type D3 = [f64; 3];
 
-pub(super) fn wide(v: Vec3) -> D3 {
+/// The same numbers.
+pub fn wide(v: Vec3) -> D3 {
     v.to_array().map(f64::from)
 }
 
-pub(super) fn minus(a: D3, b: D3) -> D3 {
+/// `a - b`.
+pub fn minus(a: D3, b: D3) -> D3 {
     std::array::from_fn(|i| a[i] - b[i])
 }
 
 /// `a + b * s`.
-pub(super) fn plus(a: D3, b: D3, s: f64) -> D3 {
+pub fn plus(a: D3, b: D3, s: f64) -> D3 {
     std::array::from_fn(|i| a[i] + b[i] * s)
 }
 
-pub(super) fn dot(a: D3, b: D3) -> f64 {
+/// The dot product.
+pub fn dot(a: D3, b: D3) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
-pub(super) fn cross(a: D3, b: D3) -> D3 {
+/// The cross product.
+pub fn cross(a: D3, b: D3) -> D3 {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
 /// Whether the ray meets the triangle in front of its origin, or within a millionth of its edges.
 /// (Möller and Trumbore, 1997.)
-pub(super) fn meets_triangle(ray: &Ray, triangle: &Triangle) -> bool {
+pub fn meets_triangle(ray: &Ray, triangle: &Triangle) -> bool {
     let (a, d) = (wide(triangle.v0), wide(ray.direction));
     let (e1, e2) = (minus(wide(triangle.v1), a), minus(wide(triangle.v2), a));
     let across = cross(d, e2);

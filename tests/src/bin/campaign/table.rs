@@ -1,0 +1,153 @@
+//! Tables: of a terminal, 100 columns wide, and of the book.
+
+use std::fmt::Write as _;
+
+use crate::Measured;
+use crate::outcome::{Found, Outcome};
+use crate::row::{Group, Row, Unit};
+
+/// The head of a group's table.
+pub(crate) fn head(group: &Group) -> String {
+    let mut text = format!("{} ({})\n", group.title, group.name);
+    for (i, clause) in group.clauses.iter().enumerate() {
+        let lines = wrapped(clause, WIDTH - 5);
+        let _ = writeln!(text, "  {}. {lines}", i + 1);
+    }
+    let _ = writeln!(
+        text,
+        "  {:<36}{:>6} {:<6}{:>8}{:>8}{:>8}{:>9} {:>8}  ",
+        "row", "count", "unit", "CPU", "WGSL", "f64", "textbook", "bound",
+    );
+    text
+}
+
+/// Columns of a terminal.
+const WIDTH: usize = 100;
+
+/// A text in lines of at most `width` characters, indented by 5 but for the first.
+fn wrapped(text: &str, width: usize) -> String {
+    let (mut out, mut column) = (String::new(), 0);
+    for word in text.split(' ') {
+        let length = word.chars().count();
+        if column > 0 && column + 1 + length > width {
+            out += "\n     ";
+            column = 0;
+        }
+        if column > 0 {
+            out.push(' ');
+            column += 1;
+        }
+        out += word;
+        column += length;
+    }
+    out
+}
+
+/// A row of it.
+pub(crate) fn line(row: &Row, outcome: &Outcome) -> String {
+    let [cpu, wgsl, f64] = cells(outcome);
+    format!(
+        "  {:<36}{:>6} {:<6}{:>8}{:>8}{:>8}{:>9} {:>8}  {}",
+        row.name,
+        short_count(most(outcome)),
+        row.unit.name(),
+        cpu,
+        wgsl,
+        f64,
+        textbook(row, outcome),
+        bound(row),
+        verdict(row, outcome),
+    )
+}
+
+/// All tables in Markdown, with an anchor for each group.
+pub(crate) fn markdown(all: &[Measured]) -> String {
+    let mut text = String::new();
+    for Measured { group, rows } in all {
+        let _ = writeln!(text, "<!-- ANCHOR: {} -->", group.name);
+        for (i, clause) in group.clauses.iter().enumerate() {
+            let _ = writeln!(text, "{}. {clause}", i + 1);
+        }
+        text += "\n| row | inputs | unit | CPU | WGSL | f64 | textbook | bound | clause | |\n";
+        text += "|---|--:|---|--:|--:|--:|--:|--:|--:|---|\n";
+        for (row, outcome) in rows {
+            let [cpu, wgsl, f64] = cells(outcome);
+            let _ = writeln!(
+                text,
+                "| {} | {} | {} | {cpu} | {wgsl} | {f64} | {} | {} | {} | {} |",
+                row.name,
+                short_count(most(outcome)),
+                row.unit.name(),
+                textbook(row, outcome),
+                bound(row),
+                row.clause,
+                verdict(row, outcome),
+            );
+        }
+        let _ = writeln!(text, "<!-- ANCHOR_END: {} -->\n", group.name);
+    }
+    text
+}
+
+/// The figures of the CPU's variants or of the host together, of WGSL, and of `f64`.
+fn cells(outcome: &Outcome) -> [String; 3] {
+    let is_of_cpu = |found: &&Found| !matches!(found.variant, "wgsl" | "f64");
+    let worst = outcome.found.iter().filter(is_of_cpu).map(|found| found.worst);
+    let cpu = worst.fold(None, |a: Option<f64>, b| Some(a.map_or(b, |a| a.max(b))));
+    let of = |variant| outcome.of(variant).map(|found| found.worst);
+    [cpu, of("wgsl"), of("f64")].map(|worst| worst.map_or_else(String::new, figure))
+}
+
+/// Faults as a share of the inputs, errors as they are.
+fn textbook(row: &Row, outcome: &Outcome) -> String {
+    match (outcome.textbook, row.unit) {
+        (None, _) => String::new(),
+        (Some(share), Unit::Faults) => format!("{:.2} %", 100.0 * share),
+        (Some(worst), _) => figure(worst),
+    }
+}
+
+fn bound(row: &Row) -> String {
+    let bound = row.bound;
+    if bound.cpu == bound.wgsl {
+        return figure(bound.cpu);
+    }
+    format!("{}/{}", figure(bound.cpu), figure(bound.wgsl))
+}
+
+/// `BITS` if packets have other bits than the scalar variant.
+pub(crate) fn verdict(row: &Row, outcome: &Outcome) -> &'static str {
+    if row.holds(outcome) {
+        "holds"
+    } else if outcome.other_bits > 0 {
+        "BITS"
+    } else {
+        "FAILS"
+    }
+}
+
+fn most(outcome: &Outcome) -> u64 {
+    outcome.found.iter().map(|found| found.count).max().unwrap_or(0)
+}
+
+/// `123456` as `1.2e5`.
+fn short_count(count: u64) -> String {
+    if count < 10_000 {
+        return count.to_string();
+    }
+    format!("{:.1e}", count as f64).replace(".0e", "e")
+}
+
+/// Two digits.
+fn figure(worst: f64) -> String {
+    if worst == 0.0 {
+        "0".to_owned()
+    } else if worst.is_infinite() {
+        "infinite".to_owned()
+    } else if (0.01..1000.0).contains(&worst) {
+        let text = format!("{worst:.*}", if worst < 1.0 { 3 } else { 1 });
+        text.trim_end_matches('0').trim_end_matches('.').to_owned()
+    } else {
+        format!("{worst:.1e}").replace(".0e", "e")
+    }
+}
