@@ -101,7 +101,27 @@ fn leading_closure(tokens: &[TokenTree]) -> Option<(TokenStream, usize)> {
     let parse = |input: syn::parse::ParseStream<'_>| {
         let closure: syn::ExprClosure = input.parse()?;
         let rest: TokenStream = input.parse()?;
-        Ok((closure.to_token_stream(), rest.into_iter().count()))
+        Ok((closure.to_token_stream(), rest.into_iter().map(|token| leaves(&token)).sum::<usize>()))
     };
-    parse.parse2(tokens.iter().cloned().collect()).ok()
+    let (closure, rest) = parse.parse2(tokens.iter().cloned().collect()).ok()?;
+    // A closure that ends within a fragment of a macro is left to rustc.
+    let mut after = 0;
+    for (count, token) in tokens.iter().rev().enumerate() {
+        if after == rest {
+            return Some((closure, count));
+        }
+        after += leaves(token);
+    }
+    None
+}
+
+/// Returns how many tokens syn sees: a group without delimiters, which is a fragment of a macro, is
+/// what it contains.
+fn leaves(token: &TokenTree) -> usize {
+    match token {
+        TokenTree::Group(group) if group.delimiter() == Delimiter::None => {
+            group.stream().into_iter().map(|token| leaves(&token)).sum()
+        }
+        _ => 1,
+    }
 }

@@ -2,7 +2,7 @@ use glam::{Vec3, vec3};
 
 use super::*;
 
-fn load_mesh(extension: &str, bytes: &[u8]) -> Result<Mesh, LoadError> {
+pub(super) fn load_mesh(extension: &str, bytes: &[u8]) -> Result<Mesh, LoadError> {
     Temp::new(extension, bytes).mesh()
 }
 
@@ -19,7 +19,7 @@ const HEADER: &str = "element vertex 4\nproperty float x\nproperty float y\nprop
     element face 1\nproperty uchar kind\nproperty list uchar int vertex_indices\nend_header\n";
 
 /// A square as a PLY, with a list of corners.
-fn ply_square(encoding: &str, corners: &[i32]) -> Vec<u8> {
+pub(super) fn ply_square(encoding: &str, corners: &[i32]) -> Vec<u8> {
     let mut out = format!("ply\nformat {encoding} 1.0\n{HEADER}").into_bytes();
     if encoding == "ascii" {
         let rows = SQUARE.map(|v| format!("{} {} {}\n", v.x, v.y, v.z)).concat();
@@ -43,7 +43,7 @@ fn ply_square(encoding: &str, corners: &[i32]) -> Vec<u8> {
     out
 }
 
-fn tri_square() -> Vec<u8> {
+pub(super) fn tri_square() -> Vec<u8> {
     let mut tri = 2u32.to_le_bytes().to_vec();
     for i in [0, 1, 2, 0, 2, 3] {
         tri.extend(SQUARE[i].to_array().iter().flat_map(|x| x.to_le_bytes()));
@@ -51,7 +51,7 @@ fn tri_square() -> Vec<u8> {
     tri
 }
 
-const OBJ_SQUARE: &str = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n";
+pub(super) const OBJ_SQUARE: &str = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n";
 
 #[test]
 fn a_square_in_every_format() {

@@ -15,6 +15,7 @@ use glam::{UVec3, Vec3};
 
 use super::environments::{check_environment, exr, exrs, hdr, load_environment};
 use super::memory::assert_modest;
+use super::meshes::{OBJ_SQUARE, load_mesh, ply_square, tri_square};
 use super::presets::{EXPORTED, load_presets};
 use super::scene_files::*;
 use super::volumes::{beside, bytes_of, gzip, meta_header, nifti, nrrd_header, numbers, png_bytes};
@@ -190,6 +191,45 @@ fn grids() {
 fn tracts() {
     each_variant(&super::tracts::files(), |_, bytes| {
         let _ = super::tracts::check_tracts(bytes, "a variant");
+    });
+}
+
+/// Clouds in every format and encoding.
+#[test]
+fn clouds() {
+    let cloud = small(9);
+    let las = |format, compressed| las_bytes(&cloud, format, compressed, 257);
+    let encodings = ["ascii", "binary_little_endian", "binary_big_endian"];
+    let xyz = "# x y z r g b\n0.5 1 -2 7 8 9\n\n1e3,2.5,0,255,0,1\n";
+    let mut all = vec![("las", las(2, false)), ("las", las(7, false)), ("laz", las(3, true))];
+    all.extend(encodings.map(|encoding| ("ply", ply_bytes(&cloud, encoding))));
+    all.push(("xyz", xyz.as_bytes().to_vec()));
+    let files: Vec<Vec<u8>> = all.iter().map(|file| file.1.clone()).collect();
+    each_variant(&files, |index, bytes| match load_bytes(all[index].0, bytes) {
+        Ok(cloud) => {
+            let is_finite = |p: &[f64; 3]| p.iter().all(|c| c.is_finite());
+            assert!(!cloud.positions.is_empty() && cloud.positions.iter().all(is_finite));
+            assert!(cloud.colors.is_empty() || cloud.colors.len() == cloud.positions.len());
+        }
+        Err(e) => assert!(!e.to_string().contains('\n'), "{e}"),
+    });
+}
+
+/// Meshes in every format and encoding.
+#[test]
+fn meshes() {
+    let encodings = ["ascii", "binary_little_endian", "binary_big_endian"];
+    let mut all = vec![("obj", OBJ_SQUARE.as_bytes().to_vec()), ("tri", tri_square())];
+    all.extend(encodings.map(|encoding| ("ply", ply_square(encoding, &[0, 1, 2, 3]))));
+    let files: Vec<Vec<u8>> = all.iter().map(|file| file.1.clone()).collect();
+    each_variant(&files, |index, bytes| match load_mesh(all[index].0, bytes) {
+        Ok(mesh) => {
+            let count = mesh.vertices.len() as u32;
+            assert!(mesh.triangles.iter().flatten().all(|&corner| corner < count));
+            assert!(mesh.normals.is_empty() || mesh.normals.len() == mesh.vertices.len());
+            assert!(mesh.vertices.iter().all(|v| v.is_finite()));
+        }
+        Err(e) => assert!(!e.to_string().contains('\n'), "{e}"),
     });
 }
 

@@ -6,7 +6,7 @@ use quote::quote;
 use crate::{expand_closure, expand_kernel, expand_primitive, twin};
 
 /// Returns the texts of the `compile_error!` calls in `tokens`.
-fn errors(tokens: TokenStream) -> Vec<String> {
+pub(super) fn errors(tokens: TokenStream) -> Vec<String> {
     fn walk(tokens: TokenStream, found: &mut Vec<String>) {
         let all: Vec<_> = tokens.into_iter().collect();
         for (i, token) in all.iter().enumerate() {
