@@ -2,20 +2,23 @@
 
 use std::time::{Duration, Instant};
 
-use raydsl::gpu::{GpuError, GpuScheduler, Timing};
+use raydsl::gpu::{Context, GpuError, GpuScheduler, Timing};
 
-/// Opens this machine's device if `is_asked`, and says which it is.
+/// Opens this machine's device if `is_asked`, and says which it is. If `is_fused`, its driver may fuse
+/// and move operations.
 ///
 /// # Errors
 ///
 /// If there is none.
-pub fn open(is_asked: bool) -> Result<Option<GpuScheduler>, GpuError> {
+pub fn open(is_asked: bool, is_fused: bool) -> Result<Option<GpuScheduler>, GpuError> {
     if !is_asked {
         return Ok(None);
     }
-    let gpu = GpuScheduler::new()?;
-    println!("WGSL on {}", gpu.context().adapter_name());
-    Ok(Some(gpu))
+    let context = Context::new()?;
+    let context = if is_fused { context.with_operations_fused() } else { context };
+    let exact = if context.is_exact() { "exact" } else { "not exact" };
+    println!("WGSL on {}, {exact}", context.adapter_name());
+    Ok(Some(GpuScheduler::with_context(context)))
 }
 
 /// How long a device is kept busy for one figure.

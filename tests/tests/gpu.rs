@@ -416,6 +416,23 @@ fn hard_numbers() -> Vec<(f32, f32, f32)> {
     inputs.collect()
 }
 
+/// A driver that may fuse operations promises nothing, and its results are near all the same.
+#[test]
+fn devices_whose_operations_are_fused_are_not_exact() -> Result<(), Error> {
+    if gpu().is_none() {
+        return Ok(());
+    }
+    let fused = GpuScheduler::with_context(Context::new()?.with_operations_fused());
+    assert!(!fused.context().is_exact());
+    let kernel = kernel!(|a: f32, b: f32, c: f32| a * b + c);
+    let inputs = [(2.0, 3.0, 1.0), (0.1, 0.2, 0.3)];
+    let mut found = [0.0; 2];
+    fused.batch(&kernel, &inputs, &mut found)?;
+    assert_eq!(found[0], 7.0);
+    assert!((found[1] - 0.32).abs() <= 1e-7, "{}", found[1]);
+    Ok(())
+}
+
 #[test]
 fn exact_devices_round_as_the_host() -> Result<(), Error> {
     let Some(gpu) = gpu() else { return Ok(()) };

@@ -63,6 +63,9 @@ struct Args {
     /// Measures WGSL, too, on this machine's device and by its clock.
     #[arg(long)]
     device: bool,
+    /// Lets the device's driver fuse and move operations: what exactness costs.
+    #[arg(long, requires = "device")]
+    fused: bool,
     /// Counts the queries' work once, without measuring times; needs the feature `counts`.
     #[arg(long, conflicts_with_all = ["json", "threads", "rounds", "traversal"])]
     counts: bool,
@@ -86,7 +89,7 @@ fn main() -> ExitCode {
     if args.counts {
         return count(&args);
     }
-    let device = match device::open(args.device) {
+    let device = match device::open(args.device, args.fused) {
         Ok(device) => device,
         Err(error) => {
             eprintln!("ao: {error}");

@@ -49,7 +49,7 @@ struct Args {
 
 fn main() -> ExitCode {
     let args = Args::parse();
-    let device = match device::open(args.device) {
+    let device = match device::open(args.device, false) {
         Ok(device) => device,
         Err(error) => {
             eprintln!("points: {error}");

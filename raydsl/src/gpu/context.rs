@@ -95,6 +95,14 @@ impl Context {
         self
     }
 
+    /// Lets the driver fuse and move operations, as WGSL allows it to: faster on some devices, and
+    /// [no longer exact](Self::is_exact).
+    #[must_use]
+    pub fn with_operations_fused(mut self) -> Self {
+        self.spirv = None;
+        self
+    }
+
     /// Sets the timeout of one dispatch; 60 s unless set. A browser has its own.
     ///
     /// A timeout is returned as an error at once, but dropping the device afterwards still waits
