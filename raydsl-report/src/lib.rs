@@ -1,4 +1,6 @@
 #![doc = include_str!("../README.md")]
+// On docs.rs, whose compiler is a nightly, items tell the feature that they need.
+#![cfg_attr(docsrs, feature(doc_cfg))]
 
 mod accuracy;
 mod comparison;
