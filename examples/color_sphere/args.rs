@@ -18,7 +18,8 @@ pub(crate) struct Args {
     pub(crate) size: (u32, u32),
     /// Points of the made landscape.
     #[arg(long, value_name = "N", default_value_t = 2_000_000)]
-    pub(crate) points: usize,
+    #[arg(value_parser = clap::value_parser!(u32).range(1..=1 << 30))]
+    pub(crate) points: u32,
     /// Which landscape.
     #[arg(long, value_name = "N", default_value_t = 7)]
     pub(crate) seed: u64,

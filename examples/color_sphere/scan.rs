@@ -16,6 +16,8 @@ pub(crate) struct Scan {
     pub(crate) spheres: Vec<ColorSphere>,
     pub(crate) camera: Pinhole,
     pub(crate) up: Vec3,
+    /// How many points are where another one is.
+    left_out: usize,
     scaled: Summary,
 }
 
@@ -32,7 +34,7 @@ impl Scan {
     pub(crate) fn load(args: &Args) -> Result<Self, Failure> {
         let (name, points) = match &args.file {
             Some(path) => (file_name(path), read(path)?),
-            None => ("landscape".to_owned(), make(args)?),
+            None => ("landscape".to_owned(), make(args)),
         };
         let scaled = cloud::scale(&points, args.radius)?;
         let view = view(args, &points)?;
@@ -43,9 +45,11 @@ impl Scan {
         let up = vec3(view.up[0] as f32, view.up[1] as f32, view.up[2] as f32).normalize();
         let fov = view.fov_y_degrees.to_radians() as f32;
         let camera = Pinhole::new(place(view.eye), place(view.target), up, fov);
+        let spheres = spheres(&points, &scaled);
         Ok(Self {
             name,
-            spheres: spheres(&points, &scaled),
+            left_out: points.positions.len() - spheres.len(),
+            spheres,
             camera,
             up,
             scaled: Summary::of(&scaled),
@@ -55,11 +59,17 @@ impl Scan {
     /// One or two lines on the scene.
     pub(crate) fn description(&self) -> String {
         let Summary { scale, offset, spacing, radius_code } = &self.scaled;
+        let left_out = match self.left_out {
+            0 => String::new(),
+            n => format!(", {n} others are at the centres of these and left out"),
+        };
         format!(
-            "{}: {} points, spacing {spacing:.4}\n\
-             radius code {radius_code} of 255; scaled by {scale:.6} about ({:.3}, {:.3}, {:.3})",
+            "{}: {} points, spacing {}{left_out}\n\
+             radius code {radius_code} of 255; scaled by {} about ({:.3}, {:.3}, {:.3})",
             self.name,
             self.spheres.len(),
+            short(*spacing),
+            short(*scale),
             offset[0],
             offset[1],
             offset[2],
@@ -88,14 +98,12 @@ fn read(path: &Path) -> Result<PointCloud, Failure> {
     Ok(points?)
 }
 
-fn make(args: &Args) -> Result<PointCloud, Failure> {
-    if args.points == 0 {
-        return Err(Failure::Usage("--points is 0; ask for at least 1 point".to_owned()));
-    }
-    let bar = bar(args.points as u64, "making a landscape");
-    let points = cloud::procedural(args.points, args.seed, &mut |done| bar.set_position(done));
+fn make(args: &Args) -> PointCloud {
+    let bar = bar(args.points.into(), "making a landscape");
+    let count = args.points as usize;
+    let points = cloud::procedural(count, args.seed, &mut |done| bar.set_position(done));
     bar.finish_and_clear();
-    Ok(points)
+    points
 }
 
 /// The camera that was asked for; what was not comes from a view of everything.
@@ -109,13 +117,7 @@ fn view(args: &Args, points: &PointCloud) -> Result<View, Failure> {
         let message = format!("--fov {} is not between 0 and 180 degrees", view.fov_y_degrees);
         return Err(Failure::Usage(message));
     }
-    let way: [f64; 3] = std::array::from_fn(|i| view.target[i] - view.eye[i]);
-    let across = [
-        way[1] * view.up[2] - way[2] * view.up[1],
-        way[2] * view.up[0] - way[0] * view.up[2],
-        way[0] * view.up[1] - way[1] * view.up[0],
-    ];
-    if across.iter().all(|c| c.abs() < 1e-12) {
+    if !view.is_upright() {
         let message = "the camera looks along --up, or --eye is --target; move one of them";
         return Err(Failure::Usage(message.to_owned()));
     }
@@ -123,14 +125,15 @@ fn view(args: &Args, points: &PointCloud) -> Result<View, Failure> {
 }
 
 fn spheres(points: &PointCloud, scaled: &Scaled) -> Vec<ColorSphere> {
-    scaled
-        .centers
-        .iter()
-        .zip(&points.colors)
-        .map(|(c, color)| ColorSphere {
-            center: Vec3::from_array(*c),
-            radius: Unorm8::from_bits(scaled.radius_code),
-            color: color.map(Unorm8::from_bits),
-        })
-        .collect()
+    let sphere = |i: usize| ColorSphere {
+        center: Vec3::from_array(scaled.centers[i]),
+        radius: Unorm8::from_bits(scaled.radius_code),
+        color: points.colors[i].map(Unorm8::from_bits),
+    };
+    scaled.distinct().into_iter().map(sphere).collect()
+}
+
+/// A length: with an exponent where four digits behind the point say nothing.
+fn short(x: f64) -> String {
+    if (1e-3..1e7).contains(&x) { format!("{x:.4}") } else { format!("{x:.3e}") }
 }

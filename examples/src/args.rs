@@ -36,12 +36,10 @@ pub fn variant_names() -> String {
 ///
 /// A text that is no point, with the remedy.
 pub fn point(text: &str) -> Result<[f64; 3], String> {
-    let parts: Vec<f64> = text
-        .split(',')
-        .filter_map(|p| p.trim().parse().ok())
-        .filter(|v: &f64| v.is_finite())
-        .collect();
-    parts.try_into().map_err(|_| "write three numbers, for example 1,2,3".to_owned())
+    let number = |part: &str| part.trim().parse().ok().filter(|v: &f64| v.is_finite());
+    let parts: Option<Vec<f64>> = text.split(',').map(number).collect();
+    let point = parts.and_then(|parts| parts.try_into().ok());
+    point.ok_or_else(|| "write three numbers, for example 1,2,3".to_owned())
 }
 
 /// `0.5`, above 0.
@@ -81,6 +79,15 @@ pub fn share(text: &str) -> Result<f64, String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn points_are_read() {
+        assert_eq!(point("1,-2.5, 3e2"), Ok([1.0, -2.5, 300.0]));
+        // No part is passed over.
+        for wrong in ["", "1,2", "1,2,3,4", "1,,2,3", "1,x,2,3", "1,2,nan,3", "inf,0,0", "1 2 3"] {
+            assert!(point(wrong).is_err_and(|e| e.contains("1,2,3")), "{wrong}");
+        }
+    }
 
     #[test]
     fn lengths_are_read() {

@@ -37,6 +37,22 @@ pub struct Scaled {
     pub spacing: f64,
 }
 
+impl Scaled {
+    /// Returns the indices of the points to draw: of those at one centre the first.
+    ///
+    /// The others cannot be seen, but every ray at them would test them all: a file that says one
+    /// place a million times would take a million tests a pixel.
+    pub fn distinct(&self) -> Vec<usize> {
+        // Adding 0 gives both zeros the same bits.
+        let place = |i: usize| self.centers[i].map(|c| (c + 0.0).to_bits());
+        let mut order: Vec<usize> = (0..self.centers.len()).collect();
+        order.par_sort_unstable_by_key(|&i| (place(i), i));
+        order.dedup_by_key(|i| place(*i));
+        order.par_sort_unstable();
+        order
+    }
+}
+
 /// Brings a cloud to a scale at which the radius of its spheres is a normalised byte.
 ///
 /// The radius, in units of the file, is the given one or 0.8 times the spacing, with which

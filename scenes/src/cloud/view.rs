@@ -15,6 +15,26 @@ pub struct View {
     pub fov_y_degrees: f64,
 }
 
+impl View {
+    /// Returns whether the view has an upright: the eye is not at the target, and `up` is not along
+    /// the line between them. It does not depend on the size of the scene or the length of `up`.
+    pub fn is_upright(&self) -> bool {
+        let way = std::array::from_fn(|i| self.target[i] - self.eye[i]);
+        let (Some(a), Some(b)) = (scaled_down(way), scaled_down(self.up)) else { return false };
+        let across =
+            [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
+        across.iter().any(|c| c.abs() > 1e-9)
+    }
+}
+
+/// A vector over its largest component, so that its products neither vanish nor overflow; `None`
+/// without a direction.
+fn scaled_down(v: [f64; 3]) -> Option<[f64; 3]> {
+    let largest = v.iter().fold(0.0f64, |m, c| m.max(c.abs()));
+    let is_direction = largest > 0.0 && v.iter().all(|c| c.is_finite());
+    is_direction.then(|| v.map(|c| c / largest))
+}
+
 /// Points that are looked at to choose a view.
 const SAMPLE: usize = 20_000;
 /// Share of the points on either side that may be stray.

@@ -53,6 +53,52 @@ fn few_points_have_a_spacing() {
 }
 
 #[test]
+fn points_at_one_centre_are_drawn_once() {
+    let distinct = |p: Vec<[f64; 3]>| scale(&cloud(p), Some(1.0)).expect("a scale").distinct();
+    assert_eq!(distinct(vec![[5.0; 3]; 20_000]), [0]);
+    let (a, b, c) = ([0.0, 1.0, 2.0], [-0.0, -1.0, 2.0], [9.0, 1.0, 0.0]);
+    assert_eq!(distinct(vec![c, a, b, a, c, b, c, a]), [0, 1, 2]);
+    // Both zeros are one place, and so is what f32 cannot tell apart.
+    assert_eq!(distinct(vec![[1.0, 0.0, 0.0], [-1.0, 0.0, 0.0], [1.0 - 1e-12, 0.0, -0.0]]), [0, 1]);
+    assert_eq!(distinct(grid(50, 1.0).positions).len(), 2500);
+}
+
+/// A view of points that are close together is upright, and so is one of points far apart.
+#[test]
+fn views_of_any_size_are_upright() {
+    for step in [1e-140, 1e-30, 1e-12, 1.0, 1e12, 1e140] {
+        let points = [[0.0; 3], [step, 0.0, 0.0], [0.0, step, 0.0]];
+        let view = suggested_view(&cloud(points.to_vec()));
+        assert!(view.is_upright(), "{step:e}: {view:?}");
+        let up = std::array::from_fn(|i| 1e-20 * (view.eye[i] - view.target[i]) / step);
+        assert!(!View { up, ..view }.is_upright(), "{step:e}: along the view");
+    }
+    let view = suggested_view(&cloud(vec![[7.0; 3]; 3]));
+    assert!(view.is_upright());
+    for up in [[0.0; 3], [f64::NAN, 0.0, 1.0], [f64::INFINITY, 0.0, 0.0]] {
+        assert!(!View { up, ..view }.is_upright(), "{up:?}");
+    }
+    assert!(!View { eye: view.target, ..view }.is_upright());
+}
+
+/// Half of the points in a clump that is tiny, and a stray one: the search ends.
+#[test]
+fn clumps_take_no_longer() {
+    let start = std::time::Instant::now();
+    for size in [1e-6, 1e-11, 1e-13, 1e-100] {
+        let clump = (0..50_000).map(|i| {
+            let i = f64::from(i);
+            [i.sin() * size, (1.7 * i).cos() * size, 0.0]
+        });
+        let mut points: Vec<[f64; 3]> = clump.collect();
+        points.push([1.0; 3]);
+        let cloud = cloud(points);
+        let _ = scale(&cloud, Some(0.1)).map(|scaled| scaled.distinct());
+    }
+    assert!(start.elapsed().as_secs() < 60, "{:?}", start.elapsed());
+}
+
+#[test]
 fn centers_map_back() {
     // Coordinates as of a national grid, which f32 would round to half a metre.
     let far = |i: usize| [4_400_000.0 + i as f64 * 0.01, 5_300_000.0 + (i % 7) as f64, 500.0];
