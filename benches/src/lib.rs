@@ -1,5 +1,5 @@
-//! Shared code of the benchmarks: scenes, the hand-written loop, clocks, the guard, visits of
-//! nodes, Embree, tables of systems beside each other.
+//! Shared code of the benchmarks: scenes, the hand-written loop, clocks, the guard, Embree, tables
+//! of systems beside each other.
 
 pub mod clock;
 pub mod contest;
@@ -10,4 +10,3 @@ pub mod guard;
 pub mod hand;
 pub mod scenes;
 pub mod table;
-pub mod visits;

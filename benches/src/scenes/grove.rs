@@ -3,8 +3,9 @@
 use std::f32::consts::TAU;
 
 use raydsl::prelude::*;
+use raydsl_tests::scenes::patch;
 
-use super::{Scene, patch, xorshift};
+use super::{Scene, xorshift};
 
 const TREES: u32 = 60;
 const BRANCHES: u32 = 10;

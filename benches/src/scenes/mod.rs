@@ -3,7 +3,6 @@
 mod grove;
 mod points;
 
-use std::f32::consts::TAU;
 use std::path::Path;
 use std::{fs, io};
 
@@ -124,45 +123,8 @@ pub fn bounds(triangles: &[Triangle]) -> Aabb {
 
 /// Two rows of fluted columns under a vault, about 80,000 triangles: a hall that needs no file.
 pub fn colonnade() -> Scene<Triangle> {
-    let mut prims = Vec::new();
-    for i in 0..12 {
-        for side in [-3.0, 3.0] {
-            let foot = vec3(side, 0.0, 3.0 * i as f32);
-            patch(&mut prims, 64, 20, |u, v| foot + column(u, v));
-        }
-    }
-    let floor = |u: f32, v: f32| vec3(12.0 * u - 6.0, 0.0, 42.0 * v - 4.0);
-    patch(&mut prims, 24, 84, floor);
-    let vault = |u: f32, v: f32| {
-        let (sin, cos) = (0.5 * TAU * u).sin_cos();
-        vec3(-6.0 * cos, 4.0 + 3.0 * sin, 42.0 * v - 4.0)
-    };
-    patch(&mut prims, 64, 84, vault);
-    for side in [-6.0, 6.0] {
-        patch(&mut prims, 24, 84, |u, v| vec3(side, 4.0 * u, 42.0 * v - 4.0));
-    }
-    patch(&mut prims, 8, 8, |u, v| vec3(12.0 * u - 6.0, 7.0 * v, 38.0));
-    let camera = Pinhole::new(vec3(0.6, 1.7, -3.0), vec3(-0.4, 2.2, 20.0), Vec3::Y, 1.05);
+    let (prims, camera) = raydsl_tests::scenes::colonnade();
     Scene { prims, camera }
-}
-
-/// A point of a column's surface: round `u`, up `v`.
-fn column(u: f32, v: f32) -> Vec3 {
-    let (sin, cos) = (TAU * u).sin_cos();
-    let flute = 0.03 * (16.0 * TAU * u).cos();
-    let swell = 0.45 - 0.1 * v + 0.25 * (1.0 - 8.0 * v).max(0.0) + 0.25 * (8.0 * v - 7.0).max(0.0);
-    vec3((swell + flute) * cos, 4.2 * v, (swell + flute) * sin)
-}
-
-/// Adds a grid of `nu` by `nv` quads over the unit square, carried into space by `at`.
-fn patch(out: &mut Vec<Triangle>, nu: u32, nv: u32, at: impl Fn(f32, f32) -> Vec3) {
-    let corner = |i: u32, j: u32| at(i as f32 / nu as f32, j as f32 / nv as f32);
-    for (i, j) in (0..nv).flat_map(|j| (0..nu).map(move |i| (i, j))) {
-        let (a, b) = (corner(i, j), corner(i + 1, j));
-        let (c, d) = (corner(i, j + 1), corner(i + 1, j + 1));
-        out.push(Triangle { v0: a, v1: b, v2: d });
-        out.push(Triangle { v0: a, v1: d, v2: c });
-    }
 }
 
 /// Numbers from 0 to below 1, always the same ones.

@@ -58,7 +58,7 @@ impl Args {
 /// A positive whole number, with or without an exponent.
 fn count(text: &str) -> Result<u64, String> {
     match text.parse::<f64>() {
-        Ok(n) if n >= 1.0 && n <= 1e12 && n.fract() == 0.0 => Ok(n as u64),
+        Ok(n) if (1.0..=1e12).contains(&n) && n.fract() == 0.0 => Ok(n as u64),
         _ => Err("write a whole number from 1 to 1e12, as in 1e8".to_owned()),
     }
 }

@@ -14,6 +14,8 @@ mod measure;
 mod outcome;
 mod row;
 mod table;
+mod timing;
+mod visits;
 
 use std::error::Error;
 use std::process::ExitCode;

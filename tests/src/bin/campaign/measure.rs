@@ -22,6 +22,9 @@ const MOST_IN_WGSL: u64 = 1_000_000;
 /// The largest number of inputs in `f64`, in which kernels are interpreted.
 const MOST_IN_F64: u64 = 100_000;
 
+/// The name of a variant, and what it gave.
+type OfVariant<R> = (&'static str, Vec<R>);
+
 /// How a row is measured.
 pub(crate) struct Run {
     /// Of the row's inputs.
@@ -58,6 +61,32 @@ impl Run {
         let mut rng = Rng::new(self.seed);
         let count = count.clamp(100, 1_000_000);
         (0..count).filter(|_| is_broken(&mut rng)).count() as f64 / count as f64
+    }
+
+    /// The variants of the CPU that are asked for.
+    pub(crate) fn of_cpu(&self) -> Vec<Variant> {
+        let scalar = self.scalar.then_some(Variant::Scalar);
+        scalar.into_iter().chain(self.packets.iter().copied()).collect()
+    }
+
+    /// What a kernel gives in every variant but `f64`, for figures of all inputs together.
+    pub(crate) fn results<A: Type, R: Type>(
+        &self,
+        kernel: &Kernel<'_, A, R>,
+        inputs: &[A],
+    ) -> Result<Vec<OfVariant<R>>, Box<dyn Error>> {
+        let run = |variant: Variant| {
+            let mut found: Vec<R> = vec![kernel.call(inputs[0]); inputs.len()];
+            kernel.run(variant, inputs, &mut found);
+            (variant.name(), found)
+        };
+        let mut all: Vec<OfVariant<R>> = self.of_cpu().into_iter().map(run).collect();
+        if let Some(gpu) = gpu().filter(|_| self.wgsl) {
+            let mut found: Vec<R> = vec![kernel.call(inputs[0]); inputs.len()];
+            gpu.batch(kernel, inputs, &mut found)?;
+            all.push(("wgsl", found));
+        }
+        Ok(all)
     }
 
     /// Runs kernels, which take turns, in every variant but `f64`.

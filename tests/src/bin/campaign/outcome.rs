@@ -21,6 +21,12 @@ impl Found {
         Self { variant, count: 0, worst: 0.0, example: None }
     }
 
+    /// A figure of all inputs together.
+    pub(crate) fn whole(variant: &'static str, count: usize, figure: f64) -> Self {
+        let worst = if figure.is_nan() { f64::INFINITY } else { figure };
+        Self { variant, count: count as u64, worst, example: None }
+    }
+
     /// Adds the error of one input; `example` describes it. A NaN is an infinite error.
     pub(crate) fn add(&mut self, unit: Unit, error: f64, example: impl FnOnce() -> String) {
         let error = if error.is_nan() { f64::INFINITY } else { error };
@@ -70,6 +76,11 @@ impl Outcome {
     /// Of something that has no variants: a builder, a loader.
     pub(crate) fn host(found: Found) -> Self {
         Self { found: vec![found], ..Self::default() }
+    }
+
+    /// Of figures of all inputs together.
+    pub(crate) fn of_figures(found: Vec<Found>) -> Self {
+        Self { found, ..Self::default() }
     }
 
     /// With a textbook's figure beside.

@@ -1,15 +1,43 @@
 //! What is measured, a file for each subject.
 
 mod boxes;
+mod builders;
+mod odd;
 mod offsets;
+mod shadows;
+mod spheres;
+mod splits;
 mod triangles;
+
+use raydsl::prelude::*;
 
 use crate::row::Group;
 
 /// Every group, in the order of the book.
-pub(crate) const ALL: &[Group] = &[triangles::GROUP, boxes::GROUP, offsets::GROUP];
+pub(crate) const ALL: &[Group] = &[
+    spheres::GROUP,
+    triangles::GROUP,
+    boxes::GROUP,
+    offsets::GROUP,
+    builders::GROUP,
+    splits::GROUP,
+    odd::GROUP,
+];
 
 /// 1 for a fault.
 fn fault(is_wrong: bool) -> Option<f64> {
     Some(f64::from(u8::from(is_wrong)))
+}
+
+/// Gives `work` a kernel for the closest hit in a tree of triangles. A kernel takes long to compile:
+/// rows share this one.
+fn closest<T>(bvh: &Bvh<'_, Triangle>, work: impl FnOnce(&Kernel<'_, (Ray,), Hit>) -> T) -> T {
+    let (mut work, mut result) = (Some(work), None);
+    with_kernel(bvh, &mut |kernel| result = work.take().map(|work| work(kernel)));
+    result.expect("the kernel is given once")
+}
+
+/// Not generic, so that it is compiled once.
+fn with_kernel(bvh: &Bvh<'_, Triangle>, work: &mut dyn FnMut(&Kernel<'_, (Ray,), Hit>)) {
+    work(&kernel!(|ray: Ray| bvh.closest_hit(ray)));
 }

@@ -10,15 +10,20 @@ use raydsl_tests::hard_rays::bounces::{
 use raydsl_tests::hard_rays::mesh::Icosphere;
 use raydsl_tests::rng::Rng;
 
-use super::fault;
+use super::{fault, shadows};
 use crate::row::{Bound, Group, Row, Unit};
 
 pub(crate) const GROUP: Group = Group {
     name: "offsets",
     title: "Rays that leave a surface which another ray has hit",
-    clauses: &["None hits the surface where it begins, or is through to the other side; origins \
-                move by at most 4 ulp of their distance from the world's origin and 8 eps of the \
-                size."],
+    clauses: &[
+        "None hits the surface where it begins, or is through to the other side; origins move by \
+         at most 4 ulp of their distance from the world's origin and 8 eps of the size.",
+        "A ray between a point of a surface and a light meets neither of them, and whatever is \
+         between.",
+        "A picture of a scene far from the world's origin differs from that at the origin by what \
+         the rounding of vertices and of shadow rays' origins moves its edges.",
+    ],
     rows,
 };
 
@@ -27,7 +32,8 @@ fn rows() -> Vec<Row> {
         let sizes = |p| SIZES.into_iter().filter(move |&size| is_resolved(p, size));
         POSITIONS.into_iter().flat_map(move |p| sizes(p).map(move |size| on(p, size)))
     }
-    at_each(from_triangles).chain(at_each(from_spheres)).collect()
+    let own = at_each(from_triangles).chain(at_each(from_spheres));
+    own.chain(shadows::rows()).collect()
 }
 
 /// Traces a ray at a surface and one from there, with a share of the error that is allowed for.

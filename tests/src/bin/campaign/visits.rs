@@ -1,7 +1,6 @@
 //! What the robust box test costs: the same walk with the test that textbooks have.
 
-use raydsl::bvh::{Bvh, Node};
-use raydsl::geometry::Primitive;
+use raydsl::bvh::Node;
 use raydsl::prelude::*;
 
 /// The reciprocals of a direction, with infinities where it has zeros.
@@ -24,7 +23,7 @@ impl Plain {
 
 /// The nodes that the closest hit of `ray` visits, in the order of the library's scalar walk, if
 /// boxes are tested by IEEE arithmetic alone and nothing is allowed for rounding.
-pub fn plain_visits<P: Primitive<Hit = Hit, Shared = ()>>(bvh: &Bvh<'_, P>, ray: &Ray) -> u32 {
+fn plain_visits<P: Primitive<Hit = Hit, Shared = ()>>(bvh: &Bvh<'_, P>, ray: &Ray) -> u32 {
     let (nodes, indices, prims) = (bvh.nodes(), bvh.indices(), bvh.primitives());
     let Some(root) = nodes.first() else { return 0 };
     let boxes = Plain { origin: ray.origin, inverse: ray.direction.recip(), t_min: ray.t_min };
@@ -63,7 +62,10 @@ pub fn plain_visits<P: Primitive<Hit = Hit, Shared = ()>>(bvh: &Bvh<'_, P>, ray:
 }
 
 /// The nodes that the library visits for these rays, and how many the textbook's test does.
-pub fn visits<P: Primitive<Hit = Hit, Shared = ()>>(bvh: &Bvh<'_, P>, rays: &[Ray]) -> (u64, u64) {
+pub(crate) fn visits<P: Primitive<Hit = Hit, Shared = ()>>(
+    bvh: &Bvh<'_, P>,
+    rays: &[Ray],
+) -> (u64, u64) {
     let robust = rays.iter().map(|ray| u64::from(bvh.closest_hit_with_cost(*ray).1.nodes)).sum();
     let plain = rays.iter().map(|ray| u64::from(plain_visits(bvh, ray))).sum();
     (robust, plain)
