@@ -8,6 +8,7 @@
 //! promises it.
 
 mod args;
+mod gather;
 mod groups;
 mod json;
 mod measure;

@@ -14,11 +14,11 @@ use crate::outcome::{Found, Outcome};
 use crate::row::Unit;
 
 /// Inputs that a thread makes at a time.
-const PART: usize = 1 << 13;
+pub(crate) const PART: usize = 1 << 13;
 /// Inputs of one dispatch.
-const BATCH: usize = 1 << 18;
+pub(crate) const BATCH: usize = 1 << 18;
 /// The largest number of inputs in WGSL.
-const MOST_IN_WGSL: u64 = 1_000_000;
+pub(crate) const MOST_IN_WGSL: u64 = 1_000_000;
 /// The largest number of inputs in `f64`, in which kernels are interpreted.
 const MOST_IN_F64: u64 = 100_000;
 
@@ -232,7 +232,7 @@ impl Run {
 }
 
 /// Which results are not the same. A NaN is the same as another.
-fn other_bits<R: Type + Debug>(expected: &[R], found: &[R]) -> Vec<usize> {
+pub(crate) fn other_bits<R: Type + Debug>(expected: &[R], found: &[R]) -> Vec<usize> {
     let size = R::SCHEMA.size();
     let (mut a, mut b) = (vec![0; size], vec![0; size]);
     let mut differs = |(expected, found): (&R, &R)| {

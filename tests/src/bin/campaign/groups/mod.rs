@@ -1,13 +1,23 @@
 //! What is measured, a file for each subject.
 
+mod accumulation;
 mod boxes;
+mod bsdfs;
 mod builders;
+mod elementary;
+mod frames;
+mod lights;
 mod odd;
 mod offsets;
+mod sampling;
 mod shadows;
 mod spheres;
 mod splits;
+mod statistics;
+mod textures;
 mod triangles;
+mod unorms;
+mod volumes;
 
 use raydsl::prelude::*;
 
@@ -15,12 +25,21 @@ use crate::row::Group;
 
 /// Every group, in the order of the book.
 pub(crate) const ALL: &[Group] = &[
-    spheres::GROUP,
     triangles::GROUP,
+    spheres::GROUP,
     boxes::GROUP,
-    offsets::GROUP,
     builders::GROUP,
     splits::GROUP,
+    offsets::GROUP,
+    elementary::GROUP,
+    unorms::GROUP,
+    textures::GROUP,
+    volumes::GROUP,
+    accumulation::GROUP,
+    sampling::GROUP,
+    frames::GROUP,
+    bsdfs::GROUP,
+    lights::GROUP,
     odd::GROUP,
 ];
 
