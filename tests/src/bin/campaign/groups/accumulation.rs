@@ -4,12 +4,14 @@ use std::error::Error;
 use std::sync::{Mutex, PoisonError};
 
 use raydsl::camera::Camera as _;
+use raydsl::kernel;
 use raydsl::prelude::*;
 use raydsl::render::{FilmExtent, FilmPart, SAMPLE_BLOCK};
 use raydsl_tests::gpu::gpu;
 use raydsl_tests::in_parallel;
 use raydsl_tests::rng::Rng as Source;
 
+use super::largest;
 use crate::measure::{MOST_IN_WGSL, Run};
 use crate::outcome::{Found, Outcome};
 use crate::row::{Bound, Group, Row, Unit};
@@ -30,25 +32,24 @@ pub(crate) const GROUP: Group = Group {
 fn rows() -> Vec<Row> {
     vec![
         Row::new("means of a pixel's samples", 1, Unit::Relative, Bound::all(1e-6), |run| {
-            let outcome = of_films(run, |film, exact| {
-                let means = film.means().zip(exact);
-                let off = means
-                    .map(|(mean, exact)| ((mean - exact.mean).abs() / exact.mean).max_element());
-                off.fold(0.0, f64::max)
-            })?;
+            let outcome =
+                of_films(run, |film, exact| {
+                    let means = film.means().zip(exact);
+                    largest(means.flat_map(|(mean, exact)| {
+                        ((mean - exact.mean).abs() / exact.mean).to_array()
+                    }))
+                })?;
             Ok(outcome.beside(running_sum(run)))
-        })
-        .share(0.5),
+        }),
         Row::new("variance around 1000", 2, Unit::Relative, Bound::all(5e-3), |run| {
             let outcome = of_films(run, |film, exact| {
                 let variances = film.variance().pixels().to_vec().into_iter().zip(exact);
                 let off = variances
                     .map(|(found, exact)| (f64::from(found.y) / exact.variance.y - 1.0).abs());
-                off.fold(0.0, f64::max)
+                largest(off)
             })?;
             Ok(outcome.beside(one_pass(run)))
-        })
-        .share(0.5),
+        }),
         Row::new("parts joined in another order", 3, Unit::Ulp, Bound::all(2.0), joined),
         Row::new("1, 2, 7 and 64 threads", 4, Unit::Faults, Bound::NONE, threads),
         Row::new("pixels with a NaN sample", 5, Unit::Faults, Bound::NONE, nans),
@@ -59,18 +60,18 @@ fn camera() -> Pinhole {
     Pinhole::new(vec3(1.0, 2.0, -14.0), vec3(0.2, 0.0, 0.0), vec3(0.0, 1.0, 0.0), 0.9)
 }
 
-type Arguments = (Ray, UVec2, Sampler);
+/// The column of pixels with NaN samples.
+const NAN_AT: u32 = 1000;
 
 /// A number from 0 to 1, one around 1000, rare bright ones, and the square of the first; NaN in one
 /// column.
-fn sampled(nan_at: u32) -> Kernel<'static, Arguments, Vec4> {
-    kernel!(move |_ray: Ray, pixel: UVec2, sampler: Sampler| {
-        let mut sampler = sampler;
-        let u = sampler.next_2d();
-        let bright = if u.y < 0.01 { 100.0 } else { 0.25 };
-        let first = if pixel.x == nan_at && u.y < 0.5 { (-1.0 - u.x).sqrt() } else { u.x };
-        vec4(first, 999.5 + u.y, bright, u.x * u.x)
-    })
+#[kernel]
+fn sampled(_ray: Ray, pixel: UVec2, sampler: Sampler) -> Vec4 {
+    let mut sampler = sampler;
+    let u = sampler.next_2d();
+    let bright = if u.y < 0.01 { 100.0 } else { 0.25 };
+    let first = if pixel.x == NAN_AT && u.y < 0.5 { (-1.0 - u.x).sqrt() } else { u.x };
+    vec4(first, 999.5 + u.y, bright, u.x * u.x)
 }
 
 /// Pixels of a film whose samples are counted by millions.
@@ -89,7 +90,7 @@ struct Moments {
 
 /// The same samples in `f64`, around a number near their mean.
 fn exact(samples: u32) -> Vec<Moments> {
-    let (kernel, sampling) = (sampled(u32::MAX), sampling(samples));
+    let (kernel, sampling) = (Kernel::of::<sampled>(), sampling(samples));
     let rays = camera().begin_frame(PIXELS, 1);
     let center = glam::dvec4(0.5, 1000.0, 1.0, 0.3);
     let of = |x: u32| {
@@ -120,7 +121,7 @@ fn of_films(
     error: impl Fn(&Film, Vec<Moments>) -> f64,
 ) -> Result<Outcome, Box<dyn Error>> {
     let samples = u32::try_from(run.count.clamp(1000, 1_000_000_000))?;
-    let kernel = sampled(u32::MAX);
+    let kernel = Kernel::of::<sampled>();
     let of_exact = exact(samples);
     let film = |variant: Variant| {
         let mut film = Film::new(PIXELS, 1);
@@ -187,7 +188,7 @@ const SIZE: UVec2 = UVec2::new(13, 7);
 
 /// Divides ranges of samples at random, and joins what comes of it in random order.
 fn joined(run: &Run) -> Result<Outcome, Box<dyn Error>> {
-    let (camera, kernel, sampling) = (camera(), sampled(u32::MAX), sampling(JOINED));
+    let (camera, kernel, sampling) = (camera(), Kernel::of::<sampled>(), sampling(JOINED));
     let scheduler = TiledScheduler::new();
     let part = |samples| -> Result<FilmPart, Box<dyn Error>> {
         let extent = FilmExtent::new(SIZE, uvec2(0, 0), SIZE, samples)?;
@@ -212,9 +213,8 @@ fn joined(run: &Run) -> Result<Outcome, Box<dyn Error>> {
             for (a, b) in a.pixels().iter().zip(b.pixels()) {
                 let off = (a.as_dvec4() - b.as_dvec4()).abs();
                 let ulps = b.to_array().map(|b| f64::from(b.abs().next_up() - b.abs()));
-                found.add(run.unit, (off / glam::DVec4::from_array(ulps)).max_element(), || {
-                    format!("cuts at {cuts:?}")
-                });
+                let off = (off / glam::DVec4::from_array(ulps)).to_array();
+                found.add(run.unit, largest(off), || format!("cuts at {cuts:?}"));
             }
         }
     }
@@ -222,7 +222,7 @@ fn joined(run: &Run) -> Result<Outcome, Box<dyn Error>> {
 }
 
 fn threads(run: &Run) -> Result<Outcome, Box<dyn Error>> {
-    let (kernel, size) = (sampled(u32::MAX), uvec2(131, 77));
+    let (kernel, size) = (Kernel::of::<sampled>(), uvec2(131, 77));
     let samples = (run.count / 10_000).clamp(2, 256) as u32;
     let rendered = |threads: usize| -> Result<Film, Box<dyn Error>> {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build()?;
@@ -251,11 +251,11 @@ fn threads(run: &Run) -> Result<Outcome, Box<dyn Error>> {
 }
 
 fn nans(run: &Run) -> Result<Outcome, Box<dyn Error>> {
-    let (kernel, size, samples) = (sampled(3), uvec2(16, 9), 64);
+    let (kernel, size, samples) = (Kernel::of::<sampled>(), uvec2(NAN_AT + 10, 3), 64);
     let judged = |name: &'static str, film: &Film| {
         let mut found = Found::new(name);
         for (i, pixel) in film.image().pixels().iter().enumerate() {
-            let is_nan = i as u32 % size.x == 3;
+            let is_nan = i as u32 % size.x == NAN_AT;
             found.add(run.unit, f64::from(u8::from(pixel.x.is_nan() != is_nan)), || {
                 format!("pixel {i} is {pixel}")
             });

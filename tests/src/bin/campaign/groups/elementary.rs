@@ -9,6 +9,7 @@ use raydsl_tests::gpu::{gpu, keeps_denormals};
 use raydsl_tests::rng::Rng;
 use raydsl_tests::values::SPECIAL_F32;
 
+use super::largest;
 use crate::measure::{MOST_IN_WGSL, Run};
 use crate::row::{Bound, Group, Row, Unit};
 
@@ -147,7 +148,7 @@ fn row(case: Case) -> Row {
                 let (x, y) = (case.draw)(&mut rng);
                 ulps(textbook(x, y), (case.exact)(x.into(), y.into()), false)
             });
-            return Ok(outcome.beside(errors.fold(0.0, f64::max)));
+            return Ok(outcome.beside(largest(errors)));
         }
         Ok(outcome)
     })

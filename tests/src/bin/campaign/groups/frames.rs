@@ -6,6 +6,7 @@ use raydsl::kernel;
 use raydsl::prelude::*;
 use raydsl_tests::rng::Rng;
 
+use super::largest;
 use crate::row::{Bound, Group, Row, Unit};
 
 pub(crate) const GROUP: Group = Group {
@@ -59,7 +60,7 @@ fn row(name: &'static str, normal: fn(&mut Rng) -> Vec3) -> Row {
             let z = normal(&mut rng);
             error(z, &frisvad(z))
         });
-        Ok(outcome.beside(errors.fold(0.0, f64::max)))
+        Ok(outcome.beside(largest(errors)))
     })
 }
 
@@ -75,7 +76,7 @@ fn error(normal: Vec3, frame: &Frame) -> f64 {
     let products = [x.dot(y), x.dot(z), y.dot(z)].map(f64::abs);
     let is_right_handed = x.cross(y).dot(z) > 0.999;
     let errors = lengths.into_iter().chain(products);
-    if is_right_handed { errors.fold(0.0, f64::max) } else { f64::INFINITY }
+    if is_right_handed { largest(errors) } else { f64::INFINITY }
 }
 
 fn frisvad(n: Vec3) -> Frame {

@@ -15,6 +15,7 @@ use raydsl::{Type, kernel};
 use raydsl_tests::rng::Rng as Source;
 
 use super::bsdfs::formulas;
+use super::largest;
 use super::statistics::Mean;
 use crate::outcome::Outcome;
 use crate::row::{Bound, Group, Row, Unit};
@@ -212,7 +213,7 @@ fn cone(name: &'static str, of: fn(&super::bsdfs::Formulas, f64) -> (f32, f64)) 
             let (found, exact) = of(&found, sine.into());
             off(found, exact)
         });
-        Ok(outcome.beside(textbook.fold(0.0, f64::max)))
+        Ok(outcome.beside(largest(textbook)))
     })
 }
 

@@ -19,8 +19,11 @@ mod triangles;
 mod unorms;
 mod volumes;
 
+use std::error::Error;
+
 use raydsl::prelude::*;
 
+use crate::outcome::Outcome;
 use crate::row::Group;
 
 /// Every group, in the order of the book.
@@ -43,6 +46,9 @@ pub(crate) const ALL: &[Group] = &[
     odd::GROUP,
 ];
 
+/// What measuring gives.
+type Measured = Result<Outcome, Box<dyn Error>>;
+
 /// 1 for a fault.
 fn fault(is_wrong: bool) -> Option<f64> {
     Some(f64::from(u8::from(is_wrong)))
@@ -59,4 +65,10 @@ fn closest<T>(bvh: &Bvh<'_, Triangle>, work: impl FnOnce(&Kernel<'_, (Ray,), Hit
 /// Not generic, so that it is compiled once.
 fn with_kernel(bvh: &Bvh<'_, Triangle>, work: &mut dyn FnMut(&Kernel<'_, (Ray,), Hit>)) {
     work(&kernel!(|ray: Ray| bvh.closest_hit(ray)));
+}
+
+/// The largest of some errors; a NaN is larger than all.
+fn largest(errors: impl IntoIterator<Item = f64>) -> f64 {
+    let number = |error: f64| if error.is_nan() { f64::INFINITY } else { error };
+    errors.into_iter().map(number).fold(0.0, f64::max)
 }

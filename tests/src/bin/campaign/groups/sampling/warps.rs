@@ -12,6 +12,7 @@ use raydsl::sampling::{
 use raydsl::{Type, kernel};
 use raydsl_tests::rng::Rng as Source;
 
+use super::super::Measured;
 use super::super::statistics::Histogram;
 use crate::outcome::Outcome;
 use crate::row::{Bound, Row, Unit};
@@ -269,14 +270,18 @@ impl Table {
         Ok(Self { weights, table })
     }
 
-    fn kernel(&self) -> Kernel<'_, (u32, Vec2, f32), Warped> {
+    /// Measures with the one kernel of tables.
+    fn measured(
+        &self,
+        measure: &dyn Fn(&[Kernel<'_, (u32, Vec2, f32), Warped>]) -> Measured,
+    ) -> Measured {
         let (cdf, size) = (self.table.cdf(), self.table.size());
-        kernel!(move |_which: u32, u: Vec2, _p: f32| {
+        measure(&[kernel!(|_which: u32, u: Vec2, _p: f32| {
             let sample = sample_table_2d(u, cdf, size);
             let back = invert_table_2d(sample.point, cdf, size);
             let point = vec3(sample.point.x, sample.point.y, table_2d_pdf(sample.point, cdf, size));
             Warped { point, pdf: sample.pdf, back }
-        })
+        })])
     }
 }
 
@@ -312,7 +317,8 @@ fn table_histogram() -> Row {
             [in_sums(&of_cells[row], x), in_sums(&of_rows, y)]
         };
         let none = Histogram::new(run.count, place);
-        run.gather(&table.kernel(), &none, |rng| (0, vec2(rng.unit(), rng.unit()), 0.0))
+        let make = |rng: &mut Source| (0, vec2(rng.unit(), rng.unit()), 0.0);
+        table.measured(&|kernel| run.gather(&kernel[0], &none, make))
     })
 }
 
@@ -328,9 +334,11 @@ fn table_integral() -> Row {
         let pdf = |center: Vec2| f64::from(table_2d_pdf(center, cdf, size));
         let integral = centers.map(pdf).sum::<f64>() / f64::from(COLUMNS * ROWS);
         let make = |rng: &mut Source| (0, any_u(rng), 0.0);
-        run.measure(&[table.kernel()], make, |_, found| {
-            let of_point = f64::from(found.point.z);
-            Some((integral - 1.0).abs() + (f64::from(found.pdf) / of_point - 1.0).abs())
+        table.measured(&|kernel| {
+            run.measure(kernel, make, |_, found| {
+                let of_point = f64::from(found.point.z);
+                Some((integral - 1.0).abs() + (f64::from(found.pdf) / of_point - 1.0).abs())
+            })
         })
     })
 }
@@ -340,8 +348,10 @@ fn table_inverse() -> Row {
     Row::new("inverse of a table", 6, Unit::Absolute, Bound::all(1e-6), |run| {
         let table = Table::new()?;
         let make = |rng: &mut Source| (0, any_u(rng), 0.0);
-        run.measure(&[table.kernel()], make, |&(_, u, _), found| {
-            Some(apart(u, found.back, false) / f64::from(found.pdf.max(1.0)))
+        table.measured(&|kernel| {
+            run.measure(kernel, make, |&(_, u, _), found| {
+                Some(apart(u, found.back, false) / f64::from(found.pdf.max(1.0)))
+            })
         })
     })
 }

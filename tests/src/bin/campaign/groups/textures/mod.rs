@@ -7,7 +7,7 @@ use raydsl::texture::{Address, Filter, TextureError};
 use raydsl_tests::rng::Rng;
 
 use self::reference::{exact_1d, exact_3d};
-use super::fault;
+use super::{Measured, fault, largest};
 use crate::measure::Run;
 use crate::outcome::Outcome;
 use crate::row::{Bound, Group, Row, Unit};
@@ -41,13 +41,19 @@ fn rows() -> Vec<Row> {
     all.chain([squares()]).chain(sums).chain([negative_weights()]).collect()
 }
 
-/// One kernel for all textures of a dimension: filter and modes are host values.
-fn read_1d<'a>(texture: &'a Texture1<'a, Vec4>) -> Kernel<'a, (f32,), Vec4> {
-    kernel!(|u: f32| tex1(texture, u))
+/// Measures with the one kernel for all textures of a dimension: filter and modes are host values.
+fn read_1d(
+    texture: &Texture1<'_, Vec4>,
+    measure: &dyn Fn(&[Kernel<'_, (f32,), Vec4>]) -> Measured,
+) -> Measured {
+    measure(&[kernel!(|u: f32| tex1(texture, u))])
 }
 
-fn read_3d<'a>(texture: &'a Texture3<'a, f32>) -> Kernel<'a, (Vec3,), f32> {
-    kernel!(|p: Vec3| tex3(texture, p))
+fn read_3d(
+    texture: &Texture3<'_, f32>,
+    measure: &dyn Fn(&[Kernel<'_, (Vec3,), f32>]) -> Measured,
+) -> Measured {
+    measure(&[kernel!(|p: Vec3| tex3(texture, p))])
 }
 
 fn config(filter: Filter, address: Address) -> TextureConfig {
@@ -87,9 +93,7 @@ fn exact_tents(n: u32, filter: Filter, address: Address, x: f32, off: f64) -> [f
 
 /// The larger difference of two.
 fn apart(found: Vec4, exact: [f64; 2]) -> f64 {
-    let off = |i: usize| (f64::from(found[i]) - exact[i]).abs();
-    // A NaN is not the lesser of two.
-    if found.x.is_nan() || found.y.is_nan() { f64::INFINITY } else { off(0).max(off(1)) }
+    largest([0, 1].map(|i| (f64::from(found[i]) - exact[i]).abs()))
 }
 
 /// Widths, and coordinates at borders and centres of texels. The textbook remaps the coordinates of
@@ -116,8 +120,10 @@ fn linear() -> Row {
                 let part = if i < known.len() { part } else { part.without_wgsl() };
                 let make = |rng: &mut Rng| (at_texels(rng, n),);
                 let exact = |x: f32| exact_tents(n, Filter::Linear, address, x, 0.0);
-                let outcome = part.measure(&[read_1d(&texture)], make, |&(x,), found| {
-                    Some(apart(*found, exact(x)) / (f64::from(n) * OFF))
+                let outcome = read_1d(&texture, &|kernel| {
+                    part.measure(kernel, make, |&(x,), found| {
+                        Some(apart(*found, exact(x)) / (f64::from(n) * OFF))
+                    })
                 })?;
                 all.merge(run.unit, outcome);
                 if address == Address::Wrap {
@@ -126,7 +132,7 @@ fn linear() -> Row {
                         let x = at_texels(&mut rng, n);
                         apart(remapped(n, x).extend(0.0).extend(0.0), exact(x))
                     });
-                    textbook = textbook.max(off.fold(0.0, f64::max) / (f64::from(n) * OFF));
+                    textbook = textbook.max(largest(off) / (f64::from(n) * OFF));
                 }
             }
         }
@@ -203,15 +209,17 @@ fn any_coordinate(filter: Filter) -> Row {
                 let part = run.part(1.0 / 24.0, (4 * i + k) as u64);
                 let make = |rng: &mut Rng| (odd_coordinate(rng),);
                 let exact = |x: f32, off: f64| exact_tents(n, filter, address, x, off);
-                let outcome = part.measure(&[read_1d(&texture)], make, |&(x,), found| {
-                    Some(if filter == Filter::Nearest {
-                        // Next to a border either texel is near enough.
-                        let near = [0.0, OFF, -OFF].map(|off| apart(*found, exact(x, off)));
-                        if near.contains(&0.0) { 0.0 } else { f64::INFINITY }
-                    } else {
-                        // No filter of these is steeper than 3/2; sums of four round.
-                        let allowed = f64::from(n) * (1.5 * OFF + 2f64.powi(-22));
-                        apart(*found, exact(x, 0.0)) / allowed
+                let outcome = read_1d(&texture, &|kernel| {
+                    part.measure(kernel, make, |&(x,), found| {
+                        Some(if filter == Filter::Nearest {
+                            // Next to a border either texel is near enough.
+                            let near = [0.0, OFF, -OFF].map(|off| apart(*found, exact(x, off)));
+                            if near.contains(&0.0) { 0.0 } else { f64::INFINITY }
+                        } else {
+                            // No filter of these is steeper than 3/2; sums of four round.
+                            let allowed = f64::from(n) * (1.5 * OFF + 2f64.powi(-22));
+                            apart(*found, exact(x, 0.0)) / allowed
+                        })
                     })
                 })?;
                 all.merge(run.unit, outcome);
@@ -238,13 +246,15 @@ fn in_space() -> Row {
                 let texture = Texture3::new(texels, size, config.addresses(addresses))?;
                 let part = run.part(1.0 / 16.0, (4 * i + k) as u64);
                 let make = |rng: &mut Rng| (rng.point(2.5),);
-                let outcome = part.measure(&[read_3d(&texture)], make, |&(p,), found| {
-                    let place = p.as_dvec3() * UVec3::from_array(size).as_dvec3();
-                    let to_border = (place - place.round()).abs().min_element();
-                    // Next to a border of texels the nearest one may be another by rounding.
-                    let is_open = filter == Filter::Nearest && to_border < 1e-5;
-                    let exact = exact_3d(&texture, p);
-                    (!is_open).then_some((f64::from(*found) - exact).abs())
+                let outcome = read_3d(&texture, &|kernel| {
+                    part.measure(kernel, make, |&(p,), found| {
+                        let place = p.as_dvec3() * UVec3::from_array(size).as_dvec3();
+                        let to_border = (place - place.round()).abs().min_element();
+                        // Next to a border of texels the nearest one may be another by rounding.
+                        let is_open = filter == Filter::Nearest && to_border < 1e-5;
+                        let exact = exact_3d(&texture, p);
+                        (!is_open).then_some((f64::from(*found) - exact).abs())
+                    })
                 })?;
                 all.merge(run.unit, outcome);
             }
@@ -265,11 +275,13 @@ fn constants() -> Row {
                 let config = TextureConfig { border, ..config(filter, address) };
                 let texture = Texture3::new(vec![constant; 60], [3, 4, 5], config)?;
                 part += 1;
-                let outcome = run.part(0.05, part).measure(
-                    &[read_3d(&texture)],
-                    |rng| (rng.point(3.0),),
-                    |_, found| fault(found.to_bits() != constant.to_bits()),
-                )?;
+                let outcome = read_3d(&texture, &|kernel| {
+                    run.part(0.05, part).measure(
+                        kernel,
+                        |rng| (rng.point(3.0),),
+                        |_, found| fault(found.to_bits() != constant.to_bits()),
+                    )
+                })?;
                 all.merge(run.unit, outcome);
             }
         }
@@ -284,12 +296,14 @@ fn inside(
     n: u32,
     texel: fn(f32) -> f32,
     error: fn(f64, f64) -> f64,
-) -> Result<Outcome, Box<dyn std::error::Error>> {
+) -> Measured {
     let texels: Vec<Vec4> = (0..n).map(|i| Vec4::splat(texel(i as f32))).collect();
     let texture = Texture1::new(texels, [n], config(filter, Address::Clamp))?;
     let make = |rng: &mut Rng| (rng.range(0.05, 0.95),);
-    run.measure(&[read_1d(&texture)], make, |&(u,), found| {
-        Some(error(f64::from(u) * f64::from(n) - 0.5, found.z.into()))
+    read_1d(&texture, &|kernel| {
+        run.measure(kernel, make, |&(u,), found| {
+            Some(error(f64::from(u) * f64::from(n) - 0.5, found.z.into()))
+        })
     })
 }
 
@@ -340,9 +354,11 @@ fn sum_of_weights(filter: Filter) -> Row {
     let name = format!("sum of weights, {filter:?}");
     Row::new(name, 5, Unit::Absolute, Bound::all(2.0 * 2f64.powi(-23)), move |run| {
         let texture = impulses(filter)?;
-        run.measure(&[read_1d(&texture)], between_impulses, |_, weights| {
-            let weights = weights.to_array().map(f64::from);
-            Some((weights.iter().sum::<f64>() - 1.0).abs())
+        read_1d(&texture, &|kernel| {
+            run.measure(kernel, between_impulses, |_, weights| {
+                let weights = weights.to_array().map(f64::from);
+                Some((weights.iter().sum::<f64>() - 1.0).abs())
+            })
         })
     })
 }
@@ -351,8 +367,10 @@ fn sum_of_weights(filter: Filter) -> Row {
 fn negative_weights() -> Row {
     Row::new("weights below 0, BSpline", 5, Unit::Faults, Bound::NONE, |run| {
         let texture = impulses(Filter::BSpline)?;
-        let outcome = run.measure(&[read_1d(&texture)], between_impulses, |_, weights| {
-            fault(!(weights.min_element() >= 0.0))
+        let outcome = read_1d(&texture, &|kernel| {
+            run.measure(kernel, between_impulses, |_, weights| {
+                fault(!weights.cmpge(Vec4::ZERO).all())
+            })
         })?;
         Ok(outcome.beside(run.broken_by(run.count / 10, |rng| {
             let a = 4.0 * between_impulses(rng).0 - 1.5;

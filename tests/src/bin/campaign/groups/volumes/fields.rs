@@ -11,8 +11,8 @@ use raydsl::volume::{
 use raydsl_tests::close::functions;
 use raydsl_tests::rng::Rng;
 
-use super::super::fault;
 use super::super::statistics::Share;
+use super::super::{Measured, fault, largest};
 use crate::outcome::Outcome;
 use crate::row::{Bound, Row, Unit};
 
@@ -46,9 +46,13 @@ impl All {
 /// A ray, the length of steps, and a tolerance.
 type Arguments = (Ray, f32, f32);
 
-fn all<'a>(volume: &'a Volume<'a, f32>) -> Kernel<'a, Arguments, All> {
+/// Measures with the one kernel for all volumes.
+fn all(
+    volume: &Volume<'_, f32>,
+    measure: &dyn Fn(&[Kernel<'_, Arguments, All>]) -> Measured,
+) -> Measured {
     let to_light = vec3(0.6, 0.0, 0.8);
-    kernel!(move |ray: Ray, step: f32, tolerance: f32| {
+    measure(&[kernel!(|ray: Ray, step: f32, tolerance: f32| {
         let none = VolumeLight::new();
         let exact = ExactCell::new().least(0.0);
         let shaded = ShadedCell::new(to_light, 0.5).least(0.0);
@@ -70,7 +74,7 @@ fn all<'a>(volume: &'a Volume<'a, f32>) -> Kernel<'a, Arguments, All> {
             mean: volume.integrate(&mean, ray, none).rgba(),
             pre: volume.integrate(&pre, ray, none).rgba(),
         }
-    })
+    })])
 }
 
 /// Noise of 7 by 5 by 6 voxels.
@@ -109,18 +113,20 @@ fn range() -> Row {
                 let ray = through(rng, vec3(6.0, 2.0, 10.0));
                 (ray, 10f32.powf(rng.range(-1.0, 1.5)), 10f32.powf(rng.range(-4.0, -1.0)))
             };
-            let part = run.part(0.25, i as u64).measure(&[all(&volume)], make, |_, found| {
-                let is_in_range = |light: Vec4, least: Vec3| {
-                    let (color, opacity) = (light.truncate(), light.w);
-                    // Rounding of products and sums.
-                    let (below, above) = (least * opacity, GREATEST * opacity);
-                    (0.0..=1.0).contains(&opacity)
-                        && color.cmpge(below * (1.0 - 4e-6)).all()
-                        && color.cmple(above * (1.0 + 4e-6)).all()
-                };
-                let lit = [found.euler].into_iter().chain(found.of_homogeneous());
-                let is_right = lit.into_iter().all(|light| is_in_range(light, LEAST));
-                fault(!(is_right && is_in_range(found.shaded, Vec3::ZERO)))
+            let part = all(&volume, &|kernel| {
+                run.part(0.25, i as u64).measure(kernel, make, |_, found| {
+                    let is_in_range = |light: Vec4, least: Vec3| {
+                        let (color, opacity) = (light.truncate(), light.w);
+                        // Rounding of products and sums.
+                        let (below, above) = (least * opacity, GREATEST * opacity);
+                        (0.0..=1.0).contains(&opacity)
+                            && color.cmpge(below * (1.0 - 4e-6)).all()
+                            && color.cmple(above * (1.0 + 4e-6)).all()
+                    };
+                    let lit = [found.euler].into_iter().chain(found.of_homogeneous());
+                    let is_right = lit.into_iter().all(|light| is_in_range(light, LEAST));
+                    fault(!(is_right && is_in_range(found.shaded, Vec3::ZERO)))
+                })
             })?;
             outcome.merge(run.unit, part);
         }
@@ -144,11 +150,10 @@ fn of_extinction(extinction: f32) -> Result<TransferFunction, Box<dyn Error>> {
 
 /// The greatest error of opacities and colours.
 fn off(lights: &[Vec4], opacity: f64) -> f64 {
-    let errors = lights
-        .iter()
-        .flat_map(|light| [f64::from(light.w) - opacity, f64::from(light.x) / 0.75 - opacity]);
-    // A NaN is not the lesser of two.
-    errors.map(|e| if e.is_nan() { f64::INFINITY } else { e.abs() }).fold(0.0, f64::max)
+    largest(lights.iter().flat_map(|light| {
+        let errors = [f64::from(light.w) - opacity, f64::from(light.x) / 0.75 - opacity];
+        errors.map(f64::abs)
+    }))
 }
 
 fn any_step(rng: &mut Rng) -> f32 {
@@ -169,8 +174,8 @@ fn slab() -> Row {
                 (Ray::new(vec3(rng.unit(), rng.unit(), -1.0), Vec3::Z), any_step(rng), 1e-5)
             };
             let part = run.part(1.0 / 3.0, i as u64);
-            let part = part.measure(&[all(&volume)], make, |_, found| {
-                Some(off(&found.of_homogeneous(), opacity))
+            let part = all(&volume, &|kernel| {
+                part.measure(kernel, make, |_, found| Some(off(&found.of_homogeneous(), opacity)))
             })?;
             outcome.merge(run.unit, part);
             let uncorrected = |step: f64| -(-f64::from(extinction) * (16.0 / step)).exp_m1();
@@ -190,9 +195,11 @@ fn block() -> Row {
         let grid = homogeneous(UVec3::splat(16))?;
         let volume = Volume::new(&grid, of_extinction(0.2)?);
         let make = |rng: &mut Rng| (through(rng, Vec3::splat(16.0)), any_step(rng), 1e-4);
-        run.measure(&[all(&volume)], make, |&(ray, ..), found| {
-            let depth = f64::from(0.2f32) * chord(ray, 16.0);
-            Some(off(&found.of_homogeneous(), -(-depth).exp_m1()))
+        all(&volume, &|kernel| {
+            run.measure(kernel, make, |&(ray, ..), found| {
+                let depth = f64::from(0.2f32) * chord(ray, 16.0);
+                Some(off(&found.of_homogeneous(), -(-depth).exp_m1()))
+            })
         })
     })
     .share(0.1)
@@ -235,9 +242,8 @@ fn skipping() -> Row {
         if !skipped.majorants().contains(&0.0) || full.majorants().contains(&0.0) {
             return Err("nothing is skipped, or something is in both".into());
         }
-        let whole = all(&full);
         let make = |rng: &mut Rng| (through(rng, Vec3::splat(39.0)), 0.37, 1e-3);
-        run.measure(&[all(&skipped)], make, |input, found| {
+        let judged = |whole: &Kernel<'_, Arguments, All>, input: &Arguments, found: &All| {
             let whole = whole.call(*input);
             let pairs = [
                 (found.exact, whole.exact),
@@ -246,11 +252,13 @@ fn skipping() -> Row {
                 (found.mean, whole.mean),
                 (found.pre, whole.pre),
             ];
-            let off = |(a, b): (Vec4, Vec4)| {
-                let off = (a - b).abs();
-                if off.is_nan() { f64::INFINITY } else { off.max_element().into() }
-            };
-            Some(pairs.map(off).into_iter().fold(0.0, f64::max))
+            let off = |(a, b): (Vec4, Vec4)| (a - b).to_array().map(|off| off.abs().into());
+            Some(largest(pairs.into_iter().flat_map(off)))
+        };
+        all(&full, &|whole| {
+            all(&skipped, &|kernel| {
+                run.measure(kernel, make, |input, found| judged(&whole[0], input, found))
+            })
         })
     })
     .share(0.01)
@@ -267,10 +275,11 @@ fn tolerance(tolerance: f32) -> Row {
             let volume = Volume::new(&grid, function);
             let make = |rng: &mut Rng| (through(rng, vec3(6.0, 2.0, 10.0)), 1.0, tolerance);
             let none = Share::new(|_: &Arguments, found: &All| {
-                !((found.adaptive - found.exact).abs().max_element() <= tolerance)
+                !(found.adaptive - found.exact).abs().cmple(Vec4::splat(tolerance)).all()
             });
             let part = run.part(0.25, i as u64);
-            outcome.merge(run.unit, part.gather(&all(&volume), &none, make)?);
+            let part = all(&volume, &|kernel| part.gather(&kernel[0], &none, make))?;
+            outcome.merge(run.unit, part);
         }
         Ok(outcome)
     })
