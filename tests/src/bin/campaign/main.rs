@@ -61,6 +61,8 @@ fn run(args: &Args) -> Result<bool, Box<dyn Error>> {
             continue;
         }
         all.push(measure_group(args, group, rows)?);
+        // After each group, so that a run that is ended leaves what it has.
+        write(args, &all)?;
     }
     if args.list {
         return Ok(true);
@@ -68,13 +70,18 @@ fn run(args: &Args) -> Result<bool, Box<dyn Error>> {
     if all.is_empty() {
         return Err("no row has this name; --list names them".into());
     }
+    Ok(all.iter().flat_map(|measured| &measured.rows).all(|(row, outcome)| row.holds(outcome)))
+}
+
+/// Writes the files that are asked for.
+fn write(args: &Args, all: &[Measured]) -> Result<(), Box<dyn Error>> {
     if let Some(path) = &args.json {
-        std::fs::write(path, json::report(&all)?)?;
+        std::fs::write(path, json::report(all)?)?;
     }
     if let Some(path) = &args.book {
-        std::fs::write(path, table::markdown(&all))?;
+        std::fs::write(path, table::markdown(all))?;
     }
-    Ok(all.iter().flat_map(|measured| &measured.rows).all(|(row, outcome)| row.holds(outcome)))
+    Ok(())
 }
 
 /// Measures and prints the rows of one group.
