@@ -8,6 +8,8 @@ mod json;
 mod legend;
 #[cfg(feature = "image")]
 mod pictures;
+#[cfg(feature = "program")]
+mod program;
 mod table;
 mod ticks;
 mod timing;
@@ -20,6 +22,8 @@ pub use json::SceneInfo;
 pub use legend::{Legend, Side};
 #[cfg(feature = "image")]
 pub use pictures::WriteError;
+#[cfg(feature = "program")]
+pub use program::{InvalidProgram, Program, ProgramSize};
 pub use ticks::Ticks;
 pub use timing::Times;
 pub use utilisation::{LineCount, Utilisation, utilisation};

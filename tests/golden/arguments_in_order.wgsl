@@ -36,7 +36,7 @@ struct Job {
 
 fn Couple_step(self_: Couple) -> Tuple {
     var self_x: f32 = self_.x;
-    var self_y: f32 = self_.y;
+    let self_y = self_.y;
     self_x = self_x + params.lit_1_0;
     return Tuple(self_x, Couple(self_x, self_y));
 }
@@ -49,12 +49,11 @@ fn add_to(x: f32, to: f32) -> Tuple_1 {
 
 fn arguments_in_order(a: f32, b: f32) -> f32 {
     var s_x: f32 = a;
-    var s_y: f32 = b;
+    let s_y = b;
     let s_x_1 = s_x;
     let s_y_1 = s_y;
     let t_1 = Couple_step(Couple(s_x_1, s_y_1));
     s_x = t_1._1.x;
-    s_y = t_1._1.y;
     var s: f32 = s_x;
     let s_1 = s;
     let t_2 = add_to(t_1._0, s_1);
@@ -71,7 +70,6 @@ fn arguments_in_order(a: f32, b: f32) -> f32 {
     let s_y_2 = s_y;
     let t_4 = Couple_step(Couple(s_x_2, s_y_2));
     s_x = t_4._1.x;
-    s_y = t_4._1.y;
     var t: f32 = t_y;
     let t_5 = t;
     let t_6 = add_to(t_3._0 + t_4._0, t_5);

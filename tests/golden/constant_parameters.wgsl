@@ -32,7 +32,7 @@ fn sum_of(values: array<f32, 3>, scale: f32) -> f32 {
     return sum * scale;
 }
 
-fn generic_sum_of(values: array<f32, 2>, scale: f32) -> f32 {
+fn generic_sum_of(values: array<f32, 2>) -> f32 {
     var sum: f32 = 0.0f;
     var i: u32 = 0u;
     for (; i < 2u; i = i + 1u) {
@@ -42,7 +42,7 @@ fn generic_sum_of(values: array<f32, 2>, scale: f32) -> f32 {
 }
 
 fn constant_parameters(x: f32, y: f32) -> f32 {
-    return sum_of(array<f32, 3>(x, y, x * 0.5f), 2.0f) + generic_sum_of(array<f32, 2>(y, x), 3.0f);
+    return sum_of(array<f32, 3>(x, y, x * 0.5f), 2.0f) + generic_sum_of(array<f32, 2>(y, x));
 }
 
 fn element(input: Tuple) -> f32 {

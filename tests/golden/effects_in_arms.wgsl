@@ -35,9 +35,9 @@ struct Job {
 
 fn Couple_dot(self_: Couple) -> Tuple {
     var self_x: f32 = self_.x;
-    var self_y: f32 = self_.y;
+    let self_y = self_.y;
     self_x = self_x + params.lit_10_0;
-    return Tuple(self_y, Couple(self_x, self_y));
+    return Tuple(self_y, Couple(self_x, 0.0f));
 }
 
 fn clamp_(n: u32) -> u32 {
@@ -62,14 +62,13 @@ fn Couple_length(self_: Couple) -> f32 {
 
 fn effects_in_arms(a: f32, n: u32) -> f32 {
     var s_x: f32 = a;
-    var s_y: f32 = 1.0f;
+    let s_y = 1.0f;
     var r: f32;
     if (a > 2.0f) {
         let s_x_1 = s_x;
         let s_y_1 = s_y;
         let t = Couple_dot(Couple(s_x_1, s_y_1));
         s_x = t._1.x;
-        s_y = t._1.y;
         r = t._0;
     } else {
         r = 0.0f;
@@ -86,7 +85,6 @@ fn effects_in_arms(a: f32, n: u32) -> f32 {
         let s_y_2 = s_y;
         let t_1 = Couple_dot(Couple(s_x_2, s_y_2));
         s_x = t_1._1.x;
-        s_y = t_1._1.y;
         sum = sum + t_1._0;
     }
     return sum + s_x;

@@ -36,18 +36,14 @@ fn last_part(all_: array<Dual, 3>, n: u32) -> f32 {
     var sum: f32 = Dual_part(all_[1], 0.5f);
     var i_1: u32 = 0u;
     for (; i_1 < 3u; i_1 = i_1 + 1u) {
-        let t = i_1 >= 1u;
-        let t_1 = i_1 >= 2u;
-        sum = sum + Dual_part(Dual(select(select(all_[0].x, all_[1].x, t), all_[2].x, t_1), select(select(all_[0].dx, all_[1].dx, t), all_[2].dx, t_1)), 2.0f);
+        sum = sum + Dual_part(Dual(0.0f, select(select(all_[0].dx, all_[1].dx, (i_1 >= 1u)), all_[2].dx, (i_1 >= 2u))), 2.0f);
     }
-    let t_2 = n % 3u;
-    let t_3 = t_2 >= 1u;
-    let t_4 = t_2 >= 2u;
-    return sum + Dual_part(Dual(select(select(all_[0].x, all_[1].x, t_3), all_[2].x, t_4), select(select(all_[0].dx, all_[1].dx, t_3), all_[2].dx, t_4)), 1.0f);
+    let t = n % 3u;
+    return sum + Dual_part(Dual(0.0f, select(select(all_[0].dx, all_[1].dx, (t >= 1u)), all_[2].dx, (t >= 2u))), 1.0f);
 }
 
 fn generic_elements(a: f32, n: u32) -> f32 {
-    return last_part(array<Dual, 3>(Dual(a, a * 0.5f), Dual(1.0f, 2.0f), Dual(a, 4.0f)), n);
+    return last_part(array<Dual, 3>(Dual(0.0f, a * 0.5f), Dual(0.0f, 2.0f), Dual(0.0f, 4.0f)), n);
 }
 
 fn element(input: Tuple) -> f32 {

@@ -117,7 +117,7 @@ fn is_within(hit: Hit, ray: Ray) -> bool {
 }
 
 fn precedes(hit: Hit, other: Hit) -> bool {
-    var is_first: bool = hit.prim_id < other.prim_id;
+    let is_first = hit.prim_id < other.prim_id;
     return hit.t < other.t || (hit.t == other.t && is_first);
 }
 
@@ -158,7 +158,7 @@ fn finite_inverse(d: vec3<f32>) -> vec3<f32> {
 
 fn slabs(ray: Ray, low: vec3<f32>, high: vec3<f32>, slack: f32, origin: f32) -> Slabs {
     let reach = max(abs(low - ray.origin), abs(high - ray.origin));
-    var padding: f32 = max(slack * largest(reach), 1.1754944e-38f);
+    let padding = max(slack * largest(reach), 1.1754944e-38f);
     let distant = abs(ray.origin);
     let padding_1 = distant * 1.1920929e-7f + padding;
     return Slabs(ray.origin + padding_1, ray.origin - padding_1, finite_inverse(ray.direction));
@@ -443,16 +443,16 @@ fn next_hits(ray: Ray, last: Hit) -> array<Tuple, 4> {
             found_3_1 = t[3]._1;
             var crossing_is_hit: bool = candidate.is_hit;
             var crossing_t: f32 = candidate.t;
-            var crossing_prim_id: u32 = id;
-            var crossing_inst_id: u32 = 0u;
+            let crossing_prim_id = id;
+            let crossing_inst_id = 0u;
             var crossing_u: f32 = candidate.u;
             var crossing_v: f32 = candidate.v;
             var left: u32 = 7u;
-            while (left > 0u && (crossing_is_hit && is_before(Hit(crossing_is_hit, crossing_t, crossing_prim_id, crossing_inst_id, crossing_u, crossing_v), Hit(found_3_0_is_hit, found_3_0_t, found_3_0_prim_id, found_3_0_inst_id, found_3_0_u, found_3_0_v)))) {
+            while (left > 0u && (crossing_is_hit && is_before(Hit(false, crossing_t, crossing_prim_id, 0u, 0.0f, 0.0f), Hit(found_3_0_is_hit, found_3_0_t, found_3_0_prim_id, 0u, 0.0f, 0.0f)))) {
                 let crossing_t_1 = crossing_t;
                 let t_1 = behind(crossing_t_1);
                 let t_2 = ColorSphere_intersect(bvh_at(crossing_prim_id), Ray(ray.origin, ray.direction, t_1, ray.t_max));
-                let t_3 = is_within(Hit(t_2.is_hit, t_2.t, crossing_prim_id, crossing_inst_id, t_2.u, t_2.v), Ray(ray.origin, ray.direction, t_1, ray.t_max));
+                let t_3 = is_within(Hit(t_2.is_hit, t_2.t, 0u, 0u, 0.0f, 0.0f), Ray(vec3<f32>(0.0f), vec3<f32>(0.0f), t_1, ray.t_max));
                 let found_0_0_is_hit_2 = found_0_0_is_hit;
                 let found_0_0_t_2 = found_0_0_t;
                 let found_0_0_prim_id_2 = found_0_0_prim_id;
@@ -517,7 +517,7 @@ fn next_hits(ray: Ray, last: Hit) -> array<Tuple, 4> {
             }
         }
     }
-    return array<Tuple, 4>(Tuple(Hit(found_0_0_is_hit, found_0_0_t, found_0_0_prim_id, found_0_0_inst_id, found_0_0_u, found_0_0_v), found_0_1), Tuple(Hit(found_1_0_is_hit, found_1_0_t, found_1_0_prim_id, found_1_0_inst_id, found_1_0_u, found_1_0_v), found_1_1), Tuple(Hit(found_2_0_is_hit, found_2_0_t, found_2_0_prim_id, found_2_0_inst_id, found_2_0_u, found_2_0_v), found_2_1), Tuple(Hit(found_3_0_is_hit, found_3_0_t, found_3_0_prim_id, found_3_0_inst_id, found_3_0_u, found_3_0_v), found_3_1));
+    return array<Tuple, 4>(Tuple(Hit(found_0_0_is_hit, found_0_0_t, found_0_0_prim_id, 0u, 0.0f, 0.0f), 0.0f), Tuple(Hit(found_1_0_is_hit, found_1_0_t, found_1_0_prim_id, 0u, 0.0f, 0.0f), 0.0f), Tuple(Hit(found_2_0_is_hit, found_2_0_t, found_2_0_prim_id, 0u, 0.0f, 0.0f), 0.0f), Tuple(Hit(found_3_0_is_hit, found_3_0_t, found_3_0_prim_id, 0u, 0.0f, 0.0f), 0.0f));
 }
 
 fn kernel(ray: Ray) -> Tuple_1 {
@@ -526,108 +526,52 @@ fn kernel(ray: Ray) -> Tuple_1 {
     var pending_0_0_is_hit: bool = false;
     var pending_0_0_t: f32 = 0.0f;
     var pending_0_0_prim_id: u32 = 0u;
-    var pending_0_0_inst_id: u32 = 0u;
-    var pending_0_0_u: f32 = 0.0f;
-    var pending_0_0_v: f32 = 0.0f;
-    var pending_0_1: f32 = 0.0f;
     var pending_1_0_is_hit: bool = false;
     var pending_1_0_t: f32 = 0.0f;
     var pending_1_0_prim_id: u32 = 0u;
-    var pending_1_0_inst_id: u32 = 0u;
-    var pending_1_0_u: f32 = 0.0f;
-    var pending_1_0_v: f32 = 0.0f;
-    var pending_1_1: f32 = 0.0f;
     var pending_2_0_is_hit: bool = false;
     var pending_2_0_t: f32 = 0.0f;
     var pending_2_0_prim_id: u32 = 0u;
-    var pending_2_0_inst_id: u32 = 0u;
-    var pending_2_0_u: f32 = 0.0f;
-    var pending_2_0_v: f32 = 0.0f;
-    var pending_2_1: f32 = 0.0f;
     var pending_3_0_is_hit: bool = false;
     var pending_3_0_t: f32 = 0.0f;
     var pending_3_0_prim_id: u32 = 0u;
-    var pending_3_0_inst_id: u32 = 0u;
-    var pending_3_0_u: f32 = 0.0f;
-    var pending_3_0_v: f32 = 0.0f;
-    var pending_3_1: f32 = 0.0f;
     var last_0_is_hit: bool = false;
     var last_0_t: f32 = 0.0f;
     var last_0_prim_id: u32 = 0u;
-    var last_0_inst_id: u32 = 0u;
-    var last_0_u: f32 = 0.0f;
-    var last_0_v: f32 = 0.0f;
-    var last_1: f32 = 0.0f;
     var has_more: bool = true;
     loop {
         if (!pending_0_0_is_hit && has_more) {
-            let t = next_hits(ray, Hit(last_0_is_hit, last_0_t, last_0_prim_id, last_0_inst_id, last_0_u, last_0_v));
+            let t = next_hits(ray, Hit(last_0_is_hit, last_0_t, last_0_prim_id, 0u, 0.0f, 0.0f));
             pending_0_0_is_hit = t[0]._0.is_hit;
             pending_0_0_t = t[0]._0.t;
             pending_0_0_prim_id = t[0]._0.prim_id;
-            pending_0_0_inst_id = t[0]._0.inst_id;
-            pending_0_0_u = t[0]._0.u;
-            pending_0_0_v = t[0]._0.v;
-            pending_0_1 = t[0]._1;
             pending_1_0_is_hit = t[1]._0.is_hit;
             pending_1_0_t = t[1]._0.t;
             pending_1_0_prim_id = t[1]._0.prim_id;
-            pending_1_0_inst_id = t[1]._0.inst_id;
-            pending_1_0_u = t[1]._0.u;
-            pending_1_0_v = t[1]._0.v;
-            pending_1_1 = t[1]._1;
             pending_2_0_is_hit = t[2]._0.is_hit;
             pending_2_0_t = t[2]._0.t;
             pending_2_0_prim_id = t[2]._0.prim_id;
-            pending_2_0_inst_id = t[2]._0.inst_id;
-            pending_2_0_u = t[2]._0.u;
-            pending_2_0_v = t[2]._0.v;
-            pending_2_1 = t[2]._1;
             pending_3_0_is_hit = t[3]._0.is_hit;
             pending_3_0_t = t[3]._0.t;
             pending_3_0_prim_id = t[3]._0.prim_id;
-            pending_3_0_inst_id = t[3]._0.inst_id;
-            pending_3_0_u = t[3]._0.u;
-            pending_3_0_v = t[3]._0.v;
-            pending_3_1 = t[3]._1;
             has_more = t[3]._0.is_hit;
         }
         let pending_0_0_is_hit_1 = pending_0_0_is_hit;
         last_0_is_hit = pending_0_0_is_hit_1;
         last_0_t = pending_0_0_t;
         last_0_prim_id = pending_0_0_prim_id;
-        last_0_inst_id = pending_0_0_inst_id;
-        last_0_u = pending_0_0_u;
-        last_0_v = pending_0_0_v;
-        last_1 = pending_0_1;
         pending_0_0_is_hit = pending_1_0_is_hit;
         pending_0_0_t = pending_1_0_t;
         pending_0_0_prim_id = pending_1_0_prim_id;
-        pending_0_0_inst_id = pending_1_0_inst_id;
-        pending_0_0_u = pending_1_0_u;
-        pending_0_0_v = pending_1_0_v;
-        pending_0_1 = pending_1_1;
         pending_1_0_is_hit = pending_2_0_is_hit;
         pending_1_0_t = pending_2_0_t;
         pending_1_0_prim_id = pending_2_0_prim_id;
-        pending_1_0_inst_id = pending_2_0_inst_id;
-        pending_1_0_u = pending_2_0_u;
-        pending_1_0_v = pending_2_0_v;
-        pending_1_1 = pending_2_1;
         pending_2_0_is_hit = pending_3_0_is_hit;
         pending_2_0_t = pending_3_0_t;
         pending_2_0_prim_id = pending_3_0_prim_id;
-        pending_2_0_inst_id = pending_3_0_inst_id;
-        pending_2_0_u = pending_3_0_u;
-        pending_2_0_v = pending_3_0_v;
-        pending_2_1 = pending_3_1;
         pending_3_0_is_hit = false;
         pending_3_0_t = 0.0f;
         pending_3_0_prim_id = 0u;
-        pending_3_0_inst_id = 0u;
-        pending_3_0_u = 0.0f;
-        pending_3_0_v = 0.0f;
-        pending_3_1 = 0.0f;
         if (!(pending_0_0_is_hit_1)) { break; }
         passed = passed + 1u;
         last = last_0_t;

@@ -507,7 +507,7 @@ fn closest_hit(ray: Ray) -> Hit {
         if (!(next.id != 4294967295u)) { break; }
         let candidate = Triangle_intersect(scene_at(next.id), next.ray);
         if (is_within(candidate, next.ray)) {
-            if (contract_is_before(Hit(candidate.is_hit, candidate.t, next.id, next.inst, candidate.u, candidate.v), Hit(best_is_hit, best_t, best_prim_id, best_inst_id, best_u, best_v))) {
+            if (contract_is_before(Hit(candidate.is_hit, candidate.t, next.id, next.inst, candidate.u, candidate.v), Hit(best_is_hit, best_t, best_prim_id, best_inst_id, 0.0f, 0.0f))) {
                 best_is_hit = candidate.is_hit;
                 best_t = candidate.t;
                 best_prim_id = next.id;
@@ -517,26 +517,7 @@ fn closest_hit(ray: Ray) -> Hit {
             }
         }
     }
-    return Hit(best_is_hit, best_t, best_prim_id, best_inst_id, best_u, best_v);
-}
-
-fn scene_local_ray(inst: u32, of_scene: Ray) -> Ray {
-    var place = scene_places_at(0u);
-    var ray = of_scene;
-    var rest = inst;
-    while (place.count > 0u) {
-        // The last of its instances that begins at or before the one that is sought.
-        var low = place.items;
-        var high = place.items + place.count;
-        while (high - low > 1u) {
-            let middle = (low + high) / 2u;
-            if (scene_places_at(middle).first <= rest) { low = middle; } else { high = middle; }
-        }
-        place = scene_places_at(low);
-        rest = rest - place.first;
-        ray = transform_ray(ray, place.to_object);
-    }
-    return ray;
+    return Hit(best_is_hit, 0.0f, best_prim_id, best_inst_id, 0.0f, 0.0f);
 }
 
 fn near_largest(v: vec3<f32>) -> f32 {
@@ -556,12 +537,12 @@ fn across(a: vec3<f32>, b: vec3<f32>) -> vec3<f32> {
     return vec3<f32>(t_2, t_3, t_4) * (1.0f / sqrt(t_2 * t_2 + t_3 * t_3 + t_4 * t_4));
 }
 
-fn normal(_ray: Ray, _hit: Hit, v0: vec3<f32>, v1: vec3<f32>, v2: vec3<f32>) -> vec3<f32> {
+fn normal(v0: vec3<f32>, v1: vec3<f32>, v2: vec3<f32>) -> vec3<f32> {
     return across(v1 - v0, v2 - v0);
 }
 
-fn Triangle_normal(self_: Triangle, ray: Ray, hit: Hit) -> vec3<f32> {
-    return normal(ray, hit, self_.v0, self_.v1, self_.v2);
+fn Triangle_normal(self_: Triangle) -> vec3<f32> {
+    return normal(self_.v0, self_.v1, self_.v2);
 }
 
 fn product(a: Affine3, b: Affine3) -> Affine3 {
@@ -614,7 +595,7 @@ fn any_hit(ray: Ray) -> bool {
 
 fn kernel(ray: Ray) -> Tuple {
     let hit = closest_hit(ray);
-    let normal_ = Triangle_normal(scene_element(select(0u, hit.prim_id, hit.is_hit)), scene_local_ray(hit.inst_id, ray), hit);
+    let normal_ = Triangle_normal(scene_element(select(0u, hit.prim_id, hit.is_hit)));
     let normal__1 = transform_normal_back(normal_, scene_to_object(hit.inst_id));
     return Tuple(hit.inst_id, normal__1, any_hit(ray));
 }

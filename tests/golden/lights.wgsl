@@ -58,12 +58,12 @@ fn Light_twice(self_: Spot, at: vec3<f32>) -> f32 {
 
 fn Spot_dimmed(self_: Spot, by: f32) -> Spot {
     let t = self_.power - by;
-    return Spot(self_.at, select(t, by, t < by));
+    return Spot(vec3<f32>(0.0f), select(t, by, t < by));
 }
 
 fn lit(light: Spot, at: vec3<f32>, steps: u32) -> f32 {
     var sum: f32 = 0.0f;
-    var now_at: vec3<f32> = light.at;
+    let now_at = light.at;
     var now_power: f32 = light.power;
     var i: u32 = 0u;
     for (; i < steps; i = i + 1u) {
@@ -71,10 +71,7 @@ fn lit(light: Spot, at: vec3<f32>, steps: u32) -> f32 {
             continue;
         }
         sum = sum + Light_twice(Spot(now_at, now_power), at * f32(i));
-        let now_at_1 = now_at;
-        let t = Spot_dimmed(Spot(now_at_1, now_power), 0.5f);
-        now_at = t.at;
-        now_power = t.power;
+        now_power = Spot_dimmed(Spot(vec3<f32>(0.0f), now_power), 0.5f).power;
     }
     return sum + Light_dark();
 }
@@ -127,13 +124,13 @@ fn generic_Light_twice(self_: Filtered, at: vec3<f32>) -> f32 {
 }
 
 fn Filtered_dimmed(self_: Filtered, by: f32) -> Filtered {
-    return Filtered(self_.light, self_.share * by);
+    return Filtered(Spot(vec3<f32>(0.0f), 0.0f), self_.share * by);
 }
 
 fn generic_lit_1(light: Filtered, at: vec3<f32>, steps: u32) -> f32 {
     var sum: f32 = 0.0f;
-    var now_light_at: vec3<f32> = light.light.at;
-    var now_light_power: f32 = light.light.power;
+    let now_light_at = light.light.at;
+    let now_light_power = light.light.power;
     var now_share: f32 = light.share;
     var i: u32 = 0u;
     for (; i < steps; i = i + 1u) {
@@ -141,12 +138,7 @@ fn generic_lit_1(light: Filtered, at: vec3<f32>, steps: u32) -> f32 {
             continue;
         }
         sum = sum + generic_Light_twice(Filtered(Spot(now_light_at, now_light_power), now_share), at * f32(i));
-        let now_light_at_1 = now_light_at;
-        let now_light_power_1 = now_light_power;
-        let t = Filtered_dimmed(Filtered(Spot(now_light_at_1, now_light_power_1), now_share), 0.5f);
-        now_light_at = t.light.at;
-        now_light_power = t.light.power;
-        now_share = t.share;
+        now_share = Filtered_dimmed(Filtered(Spot(vec3<f32>(0.0f), 0.0f), now_share), 0.5f).share;
     }
     return sum + Light_dark();
 }
@@ -158,7 +150,7 @@ fn Filtered_open(self_: Filtered) -> Spot {
 fn lights(x: f32, y: f32, n: u32) -> f32 {
     var sum: f32 = lit(Spot(vec3<f32>(x, 1.0f, 0.0f), 4.0f), vec3<f32>(y, x, 1.0f), n % 6u) + generic_lit(Sun(vec3<f32>(0.0f, 0.5f, y)), vec3<f32>(y, x, 1.0f), n % 3u) + generic_lit_1(Filtered(Spot(vec3<f32>(x, 1.0f, 0.0f), 4.0f), 0.75f), vec3<f32>(y, x, 1.0f), 2u);
     if (x > y) {
-        sum = sum + (Filtered_shine(Filtered(Spot(vec3<f32>(x, 1.0f, 0.0f), 4.0f), 0.75f), vec3<f32>(y, x, 1.0f)) + Spot_shine(Filtered_open(Filtered(Spot(vec3<f32>(x, 1.0f, 0.0f), 4.0f), 0.75f)), vec3<f32>(y, x, 1.0f)) + Light_dark());
+        sum = sum + (Filtered_shine(Filtered(Spot(vec3<f32>(x, 1.0f, 0.0f), 4.0f), 0.75f), vec3<f32>(y, x, 1.0f)) + Spot_shine(Filtered_open(Filtered(Spot(vec3<f32>(x, 1.0f, 0.0f), 4.0f), 0.0f)), vec3<f32>(y, x, 1.0f)) + Light_dark());
     }
     return sum;
 }

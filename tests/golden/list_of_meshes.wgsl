@@ -286,7 +286,7 @@ fn is_within(hit: Hit, ray: Ray) -> bool {
 }
 
 fn precedes(hit: Hit, other: Hit) -> bool {
-    var is_first: bool = hit.prim_id < other.prim_id;
+    let is_first = hit.prim_id < other.prim_id;
     return hit.t < other.t || (hit.t == other.t && is_first);
 }
 
@@ -327,7 +327,7 @@ fn finite_inverse(d: vec3<f32>) -> vec3<f32> {
 
 fn slabs(ray: Ray, low: vec3<f32>, high: vec3<f32>, slack: f32, origin: f32) -> Slabs {
     let reach = max(abs(low - ray.origin), abs(high - ray.origin));
-    var padding: f32 = max(slack * largest(reach), 1.1754944e-38f);
+    let padding = max(slack * largest(reach), 1.1754944e-38f);
     let distant = abs(ray.origin);
     let padding_1 = distant * 1.1920929e-7f + padding;
     return Slabs(ray.origin + padding_1, ray.origin - padding_1, finite_inverse(ray.direction));
@@ -545,7 +545,6 @@ fn kernel(ray: Ray) -> Tuple {
     var hits_0_is_hit: bool = false;
     var hits_0_t: f32 = 0.0f;
     var hits_0_prim_id: u32 = 0u;
-    var hits_0_inst_id: u32 = 0u;
     var hits_0_u: f32 = 0.0f;
     var hits_0_v: f32 = 0.0f;
     var tree: u32 = 0u;
@@ -559,13 +558,12 @@ fn kernel(ray: Ray) -> Tuple {
                 var is_first: bool = true;
                 if (hits_0_is_hit) {
                     let t = candidate.t > hits_0_t;
-                    is_first = select(is_before(Hit(candidate.is_hit, candidate.t, id, 0u, candidate.u, candidate.v), Hit(hits_0_is_hit, hits_0_t, hits_0_prim_id, hits_0_inst_id, hits_0_u, hits_0_v)), t, (t != (hits_0_t > candidate.t)));
+                    is_first = select(is_before(Hit(candidate.is_hit, candidate.t, id, 0u, candidate.u, candidate.v), Hit(hits_0_is_hit, hits_0_t, hits_0_prim_id, 0u, 0.0f, 0.0f)), t, (t != (hits_0_t > candidate.t)));
                 }
                 if (is_first && !(hits_0_prim_id == id && hits_0_is_hit)) {
                     hits_0_is_hit = candidate.is_hit;
                     hits_0_t = candidate.t;
                     hits_0_prim_id = id;
-                    hits_0_inst_id = 0u;
                     hits_0_u = candidate.u;
                     hits_0_v = candidate.v;
                 }

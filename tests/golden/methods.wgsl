@@ -76,7 +76,7 @@ fn methods(p: Particle, q: Particle, x: f32) -> Particle {
     var r_mass: f32 = t.mass;
     var r_alive: bool = t.alive;
     var r_hits: u32 = t.hits;
-    if (Particle_is_heavy(Particle(r_position, r_mass, r_alive, r_hits), x)) {
+    if (Particle_is_heavy(Particle(vec3<f32>(0.0f), r_mass, r_alive, 0u), x)) {
         let r_position_1 = r_position;
         let r_mass_1 = r_mass;
         let r_alive_1 = r_alive;

@@ -36,7 +36,7 @@ struct Job {
 
 fn Couple_step(self_: Couple) -> Tuple {
     var self_x: f32 = self_.x;
-    var self_y: f32 = self_.y;
+    let self_y = self_.y;
     self_x = self_x + params.lit_1_0;
     return Tuple(self_x, Couple(self_x, self_y));
 }

@@ -50,8 +50,8 @@ fn own_types_Dual_blend(self_: Dual, with_: u32) -> f32 {
 
 fn names_of_two_traits(a: f32, n: u32) -> f32 {
     let t = a - params.lit_2_0;
-    let parts = Dual_part(Dual(a, t), 2.0f) + own_types_Dual_part(Dual(a, t), 1.0f);
-    return parts + own_far(Dual(a, t), a) + Dual_blend(Dual(a, t), a * 0.5f) + own_types_Dual_blend(Dual(a, t), n % 8u);
+    let parts = Dual_part(Dual(a, 0.0f), 2.0f) + own_types_Dual_part(Dual(0.0f, t), 1.0f);
+    return parts + own_far(Dual(0.0f, t), a) + Dual_blend(Dual(a, 0.0f), a * 0.5f) + own_types_Dual_blend(Dual(0.0f, t), n % 8u);
 }
 
 fn element(input: Tuple) -> f32 {

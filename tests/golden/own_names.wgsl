@@ -261,38 +261,32 @@ fn Dual_clone(self_: Dual) -> f32 {
 
 fn Dual_iter(self_: Dual) -> Tuple {
     var self_x: f32 = self_.x;
-    var self_dx: f32 = self_.dx;
     self_x = self_x + params.lit_1_0;
-    return Tuple(self_x, Dual(self_x, self_dx));
+    return Tuple(self_x, Dual(self_x, 0.0f));
 }
 
-fn Dual_len(self_: Dual) -> u32 {
+fn Dual_len() -> u32 {
     return 2u;
 }
 
 fn own_names(a: f32, b: f32) -> f32 {
     var s_x: f32 = a * 0.125f;
-    var s_dx: f32 = b;
+    let s_dx = b;
     let s_x_1 = s_x;
     let s_dx_1 = s_dx;
     let s_x_2 = s_x;
     let s_dx_2 = s_dx;
     let e = Dual_exp(Dual(s_x_2, s_dx_2));
     let s_x_3 = s_x;
-    let s_dx_3 = s_dx;
-    let first = e.dx + Dual_exp(Dual(s_x_1, s_dx_1)).x + Dual_sin(Dual(s_x_1, s_dx_1), 0.5f) + Dual_clone(Dual(s_x_3, s_dx_3));
+    let first = e.dx + Dual_exp(Dual(s_x_1, s_dx_1)).x + Dual_sin(Dual(s_x_1, 0.0f), 0.5f) + Dual_clone(Dual(s_x_3, 0.0f));
     let s_x_4 = s_x;
-    let s_dx_4 = s_dx;
-    let t = Dual_iter(Dual(s_x_4, s_dx_4));
+    let t = Dual_iter(Dual(s_x_4, 0.0f));
     s_x = t._1.x;
-    s_dx = t._1.dx;
     let s_x_5 = s_x;
-    let s_dx_5 = s_dx;
-    let t_1 = Dual_iter(Dual(s_x_5, s_dx_5));
+    let t_1 = Dual_iter(Dual(s_x_5, 0.0f));
     s_x = t_1._1.x;
-    s_dx = t_1._1.dx;
-    let second = t._0 + t_1._0 + Dual_clone(Dual(s_x_1, s_dx_1)) + Dual_sin(Dual(s_x, s_dx), 2.0f);
-    return first + second + s_x * f32(Dual_len(Dual(s_x, s_dx)));
+    let second = t._0 + t_1._0 + Dual_clone(Dual(s_x_1, 0.0f)) + Dual_sin(Dual(s_x, 0.0f), 2.0f);
+    return first + second + s_x * f32(Dual_len());
 }
 
 fn element(input: Tuple_1) -> f32 {

@@ -87,7 +87,7 @@ fn Pair_add(self_: Pair, o: Pair) -> Pair {
 }
 
 fn Dual_add(self_: Dual, o: Dual) -> Dual {
-    return Dual(self_.x + o.x, self_.dx + o.dx);
+    return Dual(self_.x + o.x, 0.0f);
 }
 
 fn own_types_Dual_mul_1(self_: Dual, k: u32) -> f32 {
@@ -95,7 +95,7 @@ fn own_types_Dual_mul_1(self_: Dual, k: u32) -> f32 {
 }
 
 fn own_operators(a: f32, b: f32) -> f32 {
-    let t = Dual_sub(own_types_Dual_mul(Dual_mul(Dual(a, 1.0f), Dual(a, 1.0f)), 2.0f), Dual_div(Dual_neg(Dual(a, 1.0f)), 4.0f));
+    let t = Dual_sub(own_types_Dual_mul(Dual_mul(Dual(a, 0.0f), Dual(a, 1.0f)), 2.0f), Dual_div(Dual_neg(Dual(a, 1.0f)), 4.0f));
     let t_1 = f32_mul(0.5f, t);
     var sum_x: f32 = t_1.x;
     var sum_dx: f32 = t_1.dx;
@@ -115,7 +115,7 @@ fn own_operators(a: f32, b: f32) -> f32 {
         var self_x_1: f32 = list_1_x;
         var self_dx_1: f32 = list_1_dx;
         let self_x_1_1 = self_x_1;
-        let t_3 = Dual_add_assign(Dual(self_x_1_1, self_dx_1), Dual(a, 1.0f));
+        let t_3 = Dual_add_assign(Dual(self_x_1_1, self_dx_1), Dual(a, 0.0f));
         self_x_1 = t_3._1.x;
         self_dx_1 = t_3._1.dx;
         list_1_x = self_x_1;
@@ -143,17 +143,12 @@ fn own_operators(a: f32, b: f32) -> f32 {
     list_0_dx = select(list_0_dx, self_dx_3, t_8);
     list_1_x = select(list_1_x, self_x_3, t_9);
     list_1_dx = select(list_1_dx, self_dx_3, t_9);
-    let pair = Pair_add(Pair(Dual(a, 1.0f), a), Pair(t, b));
+    let pair = Pair_add(Pair(Dual(0.0f, 1.0f), a), Pair(Dual(0.0f, 0.0f), b));
     var chosen_x: f32;
-    var chosen_dx: f32;
     if (a < b) {
-        let t_10 = Dual_add(Dual(sum_x, sum_dx), t);
-        chosen_x = t_10.x;
-        chosen_dx = t_10.dx;
+        chosen_x = Dual_add(Dual(sum_x, 0.0f), t).x;
     } else {
-        let t_11 = Dual_sub(t, Dual(a, 1.0f));
-        chosen_x = t_11.x;
-        chosen_dx = t_11.dx;
+        chosen_x = Dual_sub(t, Dual(a, 1.0f)).x;
     }
     return sum_x + sum_dx + list_1_dx + list_0_x + pair.first.dx + pair.second + chosen_x + own_types_Dual_mul_1(t, 2u);
 }

@@ -98,10 +98,10 @@ fn bump(n: u32) -> Tuple_3 {
     var n_1: u32 = n;
     if (n_1 > 5u) {
         n_1 = 0u;
-        return Tuple_3(100u, n_1);
+        return Tuple_3(0u, n_1);
     }
     n_1 = n_1 + 1u;
-    return Tuple_3(n_1, n_1);
+    return Tuple_3(0u, n_1);
 }
 
 fn Walk_step(self_: Walk, length_: f32) -> Tuple_4 {

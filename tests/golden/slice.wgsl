@@ -25,13 +25,6 @@ struct Triangle {
     v2: vec3<f32>,
 }
 
-struct Node {
-    min: vec3<f32>,
-    first: u32,
-    max: vec3<f32>,
-    count: u32,
-}
-
 struct Tuple {
     _0: Ray,
 }

@@ -38,7 +38,7 @@ fn tuples(x: f32, n: u32) -> f32 {
         pair_1 = 2u;
     }
     var swapped_0: u32 = pair_1;
-    var swapped_1: f32 = pair_0;
+    let swapped_1 = pair_0;
     swapped_0 = swapped_0 + b;
     c = c + swapped_1;
     return c * a + f32(swapped_0);

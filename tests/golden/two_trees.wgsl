@@ -175,7 +175,7 @@ fn is_within(hit: Hit, ray: Ray) -> bool {
 }
 
 fn precedes(hit: Hit, other: Hit) -> bool {
-    var is_first: bool = hit.prim_id < other.prim_id;
+    let is_first = hit.prim_id < other.prim_id;
     return hit.t < other.t || (hit.t == other.t && is_first);
 }
 
@@ -208,7 +208,7 @@ fn finite_inverse(d: vec3<f32>) -> vec3<f32> {
 
 fn slabs(ray: Ray, low: vec3<f32>, high: vec3<f32>, slack: f32, origin: f32) -> Slabs {
     let reach = max(abs(low - ray.origin), abs(high - ray.origin));
-    var padding: f32 = max(slack * largest(reach), 1.1754944e-38f);
+    let padding = max(slack * largest(reach), 1.1754944e-38f);
     let distant = abs(ray.origin);
     let padding_1 = distant * 1.1920929e-7f + padding;
     return Slabs(ray.origin + padding_1, ray.origin - padding_1, finite_inverse(ray.direction));

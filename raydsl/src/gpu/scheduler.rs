@@ -18,7 +18,7 @@ use crate::machine::{
 };
 use crate::render::{
     Effort, Film, FilmArgs, Frame, Image, Kept, Observer, Radiance, Sampling, Shot, passes,
-    timing_of,
+    recorded, timing_of,
 };
 #[cfg(not(target_family = "wasm"))]
 use crate::render::{Pace, Renderer};
@@ -221,20 +221,37 @@ impl GpuScheduler {
         self.run(&resources, &module, &[], grid, image.pixels_mut()).await
     }
 
+    /// Renders a frame by another text in place of the kernel's own, of which `text` is told. It has
+    /// the same bindings and numbers: for tests that compare it with one written by hand.
+    ///
+    /// # Errors
+    ///
+    /// As for [`GpuScheduler::frame_into`].
+    #[doc(hidden)]
+    #[cfg(not(target_family = "wasm"))]
+    pub fn frame_by_text<C: Camera, A: FilmArgs, R: Type>(
+        &self,
+        camera: &C,
+        kernel: &Kernel<'_, A, R>,
+        image: &mut Image<R>,
+        text: impl FnOnce(&str) -> String,
+    ) -> Result<Timing, GpuError> {
+        let size = [image.width(), image.height()];
+        let shot = Frame { rays: camera.begin_frame(size[0], size[1]), kernel };
+        let mut module = self.module(&shot);
+        module.source = text(&module.source);
+        let resources = |visit: Visit<'_>| shot.resources(visit);
+        let run = self.run(&resources, &module, &[], Grid::of(size), image.pixels_mut());
+        pollster::block_on(run).map(timing_of)
+    }
+
     fn module<S: Shot>(&self, shot: &S) -> Module {
         let kernel = shot.kernel();
         let frame = kernel.record_grid::<S::Output>(|m, x, y, _| {
             shot.pixel_on(m, X2 { x, y }, &|m, _| no_body(m))
         });
-        let record = || {
-            kernel.record_grid::<S::Output>(|m, x, y, body| {
-                shot.pixel_on(m, X2 { x, y }, &|m, args| {
-                    m.begin_body();
-                    body(m, args)
-                })
-            })
-        };
         let describe = |out: &mut Description| kernel.describe(out);
+        let record = || recorded(shot);
         self.known_module(&kernel.identity(&describe), KernelFrame::new(frame), &record)
     }
 

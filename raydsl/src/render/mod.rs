@@ -18,6 +18,7 @@ mod part;
 mod passes;
 mod pixel_sampler;
 mod radiance;
+mod recorded;
 mod reference;
 mod renderer;
 mod scheduler;
@@ -43,6 +44,8 @@ pub use part::{FilmExtent, FilmPart, PartError, SAMPLE_BLOCK};
 pub(crate) use passes::passes;
 pub use pixel_sampler::{PixelSampler, Sampling};
 pub use radiance::Radiance;
+#[cfg(feature = "gpu")]
+pub(crate) use recorded::recorded;
 #[doc(hidden)]
 pub use reference::outcomes_of_frame;
 pub use renderer::Renderer;

@@ -212,12 +212,10 @@ mod tests {
     use crate::camera::{Camera, Pinhole, ThinLens};
     use crate::machine::wgsl::Limits;
     use crate::prelude::{Ray, Vec3, kernel};
+    use crate::render::recorded::recorded;
 
     fn wgsl<S: Shot>(shot: &S) -> String {
-        let recording = shot.kernel().record_grid::<S::Output>(|m, x, y, body| {
-            shot.pixel_on(m, X2 { x, y }, &|m, args| body(m, args))
-        });
-        recording.module(&Limits::default()).source
+        recorded(shot).module(&Limits::default()).source
     }
 
     fn pass_of<'a, C, R: Type>(

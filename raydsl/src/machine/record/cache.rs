@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use super::ir::{SceneBuffer, Uniform};
 use super::module::{self, Printed, window_count};
-use super::{Captured, Description, Recorder, Recording};
+use super::{Description, Recording};
 use crate::machine::wgsl::{Arithmetic, Limits, Module, Texture};
 
 /// The capacity for kernels and for programs: the most recently used are kept.
@@ -42,15 +42,6 @@ struct Known {
     frame: Frame,
     recording: Recording,
     program: Arc<Program>,
-}
-
-impl Recorder {
-    /// Marks the start of a kernel's body, whose captures are the same in every frame.
-    pub(crate) fn begin_body(&self) {
-        let mut state = self.state.borrow_mut();
-        state.before_body =
-            Captured { uniforms: state.uniforms.len(), buffers: state.buffers.len() };
-    }
 }
 
 impl Recording {

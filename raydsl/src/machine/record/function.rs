@@ -87,8 +87,13 @@ impl<'a> FunctionPrinter<'a> {
         }
     }
 
-    /// Finds variables that are assigned once, right in the block that declares them: these are
-    /// constants.
+    /// Returns whether a function may change the variable.
+    fn is_addressed(&self, v: VarId) -> bool {
+        self.function.nodes.iter().any(|node| node.expr == Expr::Address(v))
+    }
+
+    /// Finds variables that are assigned once, where they are declared or right in that block: these
+    /// are constants.
     fn find_single_stores(&mut self, block: &[Stmt]) {
         fn stores(block: &[Stmt], v: VarId) -> usize {
             let inner = |s: &Stmt| match s {
@@ -106,6 +111,9 @@ impl<'a> FunctionPrinter<'a> {
                     if block[i..].iter().any(here) && stores(block, *v) == 1 {
                         self.constant.push(*v);
                     }
+                }
+                Stmt::Var(v, Some(_)) if stores(block, *v) == 0 && !self.is_addressed(*v) => {
+                    self.constant.push(*v);
                 }
                 Stmt::If { then, otherwise, .. } => {
                     self.find_single_stores(then);
@@ -200,6 +208,9 @@ impl<'a> FunctionPrinter<'a> {
             Stmt::Var(v, value) => {
                 let ty = names.ty(self.function.vars[v.0 as usize].ty);
                 let text = match value {
+                    Some(value) if self.constant.contains(v) => {
+                        format!("let {} = {};", self.var(*v), self.any(*value, names))
+                    }
                     Some(value) => {
                         format!("var {}: {ty} = {};", self.var(*v), self.any(*value, names))
                     }

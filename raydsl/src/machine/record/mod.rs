@@ -8,15 +8,18 @@ mod arithmetic;
 mod builder;
 #[cfg(feature = "gpu")]
 mod cache;
+mod carried;
 mod data;
 mod description;
 mod expression;
 mod function;
 pub(crate) mod ir;
 mod kinds;
+mod lean;
 mod machine;
 mod module;
 mod names;
+mod needed;
 mod restart;
 mod settled;
 mod storage;
@@ -411,6 +414,13 @@ impl Recorder {
         });
     }
 
+    /// Marks the start of a kernel's body, whose captures are the same in every frame.
+    pub(crate) fn begin_body(&self) {
+        let mut state = self.state.borrow_mut();
+        state.before_body =
+            Captured { uniforms: state.uniforms.len(), buffers: state.buffers.len() };
+    }
+
     /// Returns a captured number of the uniform buffer, not shared with another frame's number that
     /// is equal now.
     fn captured_uniform(&self, name: &str, ty: Type, words: Vec<u32>) -> Id {
@@ -533,6 +543,15 @@ impl Recording {
         let result = kernel(&m, params);
         let entry = m.end(result);
         Self { state: m.state.into_inner(), arithmetic, entry, input, output }
+    }
+
+    /// Returns the names of all recorded functions with the source file of each; those that are the
+    /// library's text, such as traversals, have none. Functions that nothing calls are not printed.
+    pub fn functions(&self) -> impl Iterator<Item = (&str, Option<&'static str>)> {
+        self.state.functions.iter().map(|function| match function {
+            Function::Recorded(f) => (f.name.as_str(), Some(f.file)),
+            Function::Text { name, .. } => (name.as_str(), None),
+        })
     }
 
     /// Returns the module, with scene buffers split into windows according to `limits`.

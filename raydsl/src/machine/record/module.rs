@@ -5,6 +5,7 @@ use std::collections::HashSet;
 
 use super::function::{FunctionPrinter, Text};
 use super::ir::{Function, SceneBuffer, Type, Uniform};
+use super::lean::lean;
 use super::storage::{self, Stored};
 use super::types::Names;
 use super::{Recording, State, textures};
@@ -267,7 +268,7 @@ fn element_text(name: &str, value: &str) -> String {
 }
 
 /// Returns the identifiers of a text.
-fn identifiers(text: &str) -> HashSet<&str> {
+pub(super) fn identifiers(text: &str) -> HashSet<&str> {
     text.split(|c: char| !(c.is_alphanumeric() || c == '_')).filter(|w| !w.is_empty()).collect()
 }
 
@@ -358,6 +359,7 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {{
 
 /// Prints the whole module.
 pub(super) fn module(recording: &Recording, limits: &Limits) -> Printed {
+    let recording = &lean(recording);
     let state = &recording.state;
     let mut names = state.names();
     if recording.arithmetic == Arithmetic::Strict {

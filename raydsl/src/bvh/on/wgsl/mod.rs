@@ -296,7 +296,7 @@ impl Recorder {
     fn query_function(&self, prims: &dyn Described, name: String, query: &Query<'_>) -> usize {
         let (prims_name, tree) = (prims.primitives(self), self.tree(prims));
         let is_finite = self.rules().is_finite;
-        self.text_function(name, types_of(query), &|name| match &tree {
+        self.text_function(name, types_of(query, tree.is_some()), &|name| match &tree {
             None => linear(name, query, &prims_name, &is_finite),
             Some(tree) => traverse(name, "ray: Ray", "0u", query, tree),
         })
@@ -312,7 +312,7 @@ impl Recorder {
     ) -> String {
         let Some(tree) = self.tree(prims) else { unreachable!("a list has trees") };
         let parameters = format!("ray: Ray, first: u32{more}");
-        let function = self.text_function(name, types_of(query), &|name| {
+        let function = self.text_function(name, types_of(query, true), &|name| {
             traverse(name, &parameters, "first", query, &tree)
         });
         self.function_name(function)
@@ -328,7 +328,7 @@ impl Recorder {
     ) -> usize {
         let roots = self.roots_buffer(prims);
         let result = query.result;
-        self.text_function(name, types_of(query), &|name| {
+        self.text_function(name, types_of(query, true), &|name| {
             format!("fn {name}(ray: Ray) -> {result} {{\n{}}}\n", body(&roots))
         })
     }
@@ -360,10 +360,11 @@ impl Recorder {
 }
 
 /// Returns the types that the text of a query names.
-fn types_of(query: &Query<'_>) -> Vec<&'static Schema> {
+fn types_of(query: &Query<'_>, has_tree: bool) -> Vec<&'static Schema> {
     let counted = query.counts.then_some([Cost::SCHEMA, CountedHit::SCHEMA]);
-    [Ray::SCHEMA, Hit::SCHEMA, NODE_SCHEMA]
+    [Ray::SCHEMA, Hit::SCHEMA]
         .into_iter()
+        .chain(has_tree.then_some(NODE_SCHEMA))
         .chain(counted.into_iter().flatten())
         .collect()
 }
