@@ -1,4 +1,4 @@
-//! What a scene does not use leaves no trace in its generated code.
+//! Items that a program declares and its kernels do not use change no byte of their text.
 
 /// A program; what stands behind its name is in one of the two only.
 macro_rules! program {
@@ -52,6 +52,13 @@ macro_rules! program {
 
 program!(small);
 program!(large
+    use raydsl::bsdf::{Bsdf, BsdfSample};
+    use raydsl::light::{Light, LightExtent, LightSample};
+    use raydsl::texture::AsTextureRef;
+    use raydsl::volume::{
+        ExactCell, Grid, GridConfig, TransferFunction, Volume, VolumeLight,
+    };
+
     #[derive(Clone, Copy, Debug, Type)]
     pub(crate) struct Unused {
         pub(crate) at: Mat4,
@@ -94,11 +101,76 @@ program!(large
         }
     }
 
+    #[kernel]
+    impl Bsdf for Unused {
+        fn eval(&self, wo: Vec3, wi: Vec3) -> Vec3 {
+            self.at.x_axis.truncate() * (wo.z * wi.z)
+        }
+
+        fn sample(&self, wo: Vec3, u: Vec3) -> BsdfSample {
+            let wi = sample_cosine_hemisphere(vec2(u.x, u.y));
+            BsdfSample::of(wi, Unused::eval(self, wo, wi), Unused::pdf(self, wo, wi))
+        }
+
+        fn pdf(&self, _wo: Vec3, wi: Vec3) -> f32 {
+            cosine_hemisphere_pdf(wi.z)
+        }
+    }
+
+    #[derive(Clone, Copy, Debug, Type)]
+    pub(crate) struct Lantern {
+        pub(crate) at: Vec3,
+    }
+
+    #[kernel]
+    impl Light for Lantern {
+        fn sample(&self, from: Vec3, _u: Vec2) -> LightSample {
+            let way = self.at - from;
+            LightSample::distant(normalize(way), Vec3::ONE, 1.0, true)
+        }
+
+        fn power(&self, radius: f32) -> f32 {
+            radius * self.at.x
+        }
+
+        fn extent(&self) -> LightExtent {
+            let (axis, zero) = (Vec3::Y, Vec3::ZERO);
+            LightExtent { min: zero, max: zero, axis, cos_normals: 1.0, cos_emitted: 1.0 }
+        }
+    }
+
+    #[kernel]
+    pub(crate) fn unused_queries(
+        bvh: &Bvh<'_, Ball>,
+        picture: &TextureRef2<'_, f32>,
+        volume: &Volume<'_, f32>,
+        exact: ExactCell,
+        ray: Ray,
+    ) -> f32 {
+        let hits = bvh.multi_hit_by::<2>(ray, |a: Hit, b: Hit| a.t > b.t);
+        let light = volume.integrate(&exact, ray, VolumeLight::new());
+        tex2(picture, vec2(hits[0].t, hits[1].t)) + light.opacity()
+    }
+
+    pub(crate) fn unused_data(ball: Ball, ray: Ray) -> Result<f32, Box<dyn std::error::Error>> {
+        let (balls, texels, voxels) = ([ball], [0.5f32; 4], [1.0f32; 8]);
+        let bvh = Bvh::build(&balls)?;
+        let picture = Texture2::new(&texels, [2, 2], TextureConfig::new())?;
+        let grid = Grid::new(&voxels[..], uvec3(2, 2, 2), GridConfig::new())?;
+        let function = TransferFunction::from_extinction(&[(0.0, Vec3::ONE)], &[(0.0, 2.0)])?;
+        let volume = Volume::new(&grid, function);
+        let exact = ExactCell::new();
+        Ok(self::unused_queries(&bvh, &picture.as_texture_ref(), &volume, exact, ray))
+    }
+
     pub(crate) fn also() -> f32 {
         let unused = Unused { at: Mat4::IDENTITY, list: [UVec3::ONE; 4] };
         let ball = Ball { center: Vec3::ZERO, radius: 1.0 };
         let k = kernel!(|x: f32| unused.glow(x) + ball.radius + unused.list[1].x as f32);
-        k.call((1.0,)) + self::unused(0.5)
+        let lantern = Lantern { at: Vec3::ZERO };
+        let lit = lantern.sample(Vec3::Y, Vec2::ZERO).pdf + unused.pdf(Vec3::Z, Vec3::Z);
+        let seen = unused_data(ball, Ray::new(Vec3::ZERO, Vec3::Z)).unwrap_or(f32::NAN);
+        k.call((1.0,)) + self::unused(0.5) + lit + seen
     }
 );
 

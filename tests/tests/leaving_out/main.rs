@@ -1,0 +1,8 @@
+//! What a scene does not use leaves no trace in its generated code.
+
+mod by_hand;
+mod features;
+mod identity;
+mod matrix;
+mod scenes;
+mod unread;
