@@ -3,7 +3,7 @@
 //!
 //! `cargo run --release --example ambient_occlusion -- [FOLDER] [FILE]` writes
 //! `ambient_occlusion.png` to FOLDER (`out` if none is given). FILE is an `.obj`, `.ply` or `.tri`;
-//! without one there are blocks.
+//! without one there are blocks. `--explain` in place of FOLDER says how large the kernel's program is.
 
 use std::error::Error;
 use std::path::{Path, PathBuf};
@@ -12,6 +12,7 @@ use std::{env, fs};
 use raydsl::integrators::ambient_occlusion;
 use raydsl::prelude::*;
 use raydsl::render::Display;
+use raydsl_examples::everything::beside_all_surfaces;
 use raydsl_examples::{blocks, mesh};
 
 /// Passes over the film, and samples of each pixel in each.
@@ -28,8 +29,8 @@ fn camera_at(bounds: Aabb) -> Pinhole {
 }
 
 fn main() -> Result<(), Box<dyn Error>> {
+    let is_explained = env::args().nth(1).as_deref() == Some("--explain");
     let folder = PathBuf::from(env::args().nth(1).unwrap_or_else(|| "out".to_owned()));
-    fs::create_dir_all(&folder)?;
     let triangles = match env::args().nth(2) {
         Some(file) => mesh::load(Path::new(&file))?,
         None => blocks::pile(400),
@@ -40,10 +41,20 @@ fn main() -> Result<(), Box<dyn Error>> {
     let camera = camera_at(bounds);
     println!("{} triangles", triangles.len());
 
-    // ANCHOR: film
+    // ANCHOR: kernel
     let kernel = kernel!(|ray: Ray, sampler: Sampler| {
         ambient_occlusion::<_, DIRECTIONS>(&mesh, radius, ray, sampler)
     });
+    // ANCHOR_END: kernel
+    if is_explained {
+        let features = "triangles, closest and any hit, occlusion, Sobol samples, a camera";
+        let sampling = Sampling::new(PASSES * SAMPLES);
+        let recording = kernel.record_pass(&camera, &sampling, (640, 400));
+        println!("{}", beside_all_surfaces("occlusion", features, recording)?);
+        return Ok(());
+    }
+    fs::create_dir_all(&folder)?;
+    // ANCHOR: film
     let mut film = Film::new(640, 400);
     let sampling = Sampling::new(PASSES * SAMPLES);
     for _ in 0..PASSES {

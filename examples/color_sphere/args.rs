@@ -44,6 +44,9 @@ pub(crate) struct Args {
     /// Write the figures as JSON.
     #[arg(long, value_name = "FILE")]
     pub(crate) json: Option<PathBuf>,
+    /// Only say how large the kernel's program is, beside one with all features.
+    #[arg(long)]
+    pub(crate) explain: bool,
     /// Where the camera is, in the file's units [default: a view of everything].
     #[arg(long, value_name = "X,Y,Z", value_parser = point, allow_hyphen_values = true)]
     pub(crate) eye: Option<[f64; 3]>,

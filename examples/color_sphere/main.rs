@@ -17,6 +17,7 @@ use clap::Parser;
 use raydsl::bvh::{BuildConfig, BuildError};
 use raydsl::prelude::*;
 use raydsl_examples::comparison::{Frames, bar};
+use raydsl_examples::everything::beside_all_surfaces;
 use raydsl_examples::heat_map::HeatMap;
 use raydsl_report::SceneInfo;
 use rayon::prelude::*;
@@ -100,6 +101,13 @@ fn run(args: &Args) -> Result<(), Failure> {
         Shaded { color, depth: hit.t, id: if hit.is_hit { hit.prim_id } else { 0xffff_ffffu32 } }
     });
     // ANCHOR_END: kernel
+    if args.explain {
+        let recording = primary.record_frame(&scan.camera, args.size);
+        let features = "spheres in 16 bytes, closest hit, a camera";
+        let table = beside_all_surfaces("color_sphere", features, recording);
+        println!("{}", table.map_err(|error| Failure::Usage(error.to_string()))?);
+        return Ok(());
+    }
 
     let frames =
         Frames { size: args.size, runs: args.runs, variants: &args.variants, out: &args.out };

@@ -16,6 +16,7 @@ use raydsl::render::Display;
 use raydsl::volume::Fog;
 use raydsl_examples::args::{size, variant};
 use raydsl_examples::cornell::{camera, lamps, walls};
+use raydsl_examples::everything::beside_all_surfaces;
 
 /// Render the Cornell box by path tracing.
 #[derive(Debug, Parser)]
@@ -36,6 +37,9 @@ struct Args {
     /// Fill the box with fog of this mean free path in millimetres, which absorbs nothing.
     #[arg(long, value_name = "LENGTH", value_parser = free_path)]
     fog: Option<f32>,
+    /// Only say how large the kernel's program is, beside one with all features.
+    #[arg(long)]
+    explain: bool,
     /// What runs the kernel: scalar, packet4, packet8, packet16 or wgsl.
     #[arg(long, default_value = Variant::widest().name(), value_parser = variant)]
     variant: Variant,
@@ -100,9 +104,16 @@ fn in_box(ray: Ray) -> Ray {
 
 fn render(args: &Args, kernel: &Kernel<'_, (Ray, Sampler), Vec4>) -> Result<(), Box<dyn Error>> {
     let &Args { samples, variant, size: (width, height), .. } = args;
+    let (camera, sampling) = (camera(), Sampling::new(samples));
+    if args.explain {
+        let features = "triangles, closest and any hit, Lambert, lamps of triangles, paths with \
+                        roulette, Sobol samples, a camera";
+        let recording = kernel.record_pass(&camera, &sampling, (width, height));
+        println!("{}", beside_all_surfaces("cornell", features, recording)?);
+        return Ok(());
+    }
     let mut film = Film::new(width, height);
     let start = Instant::now();
-    let (camera, sampling) = (camera(), Sampling::new(samples));
     if variant == Variant::Wgsl {
         GpuScheduler::new()?.accumulate(&camera, kernel, &sampling, &mut film, samples)?;
     } else {

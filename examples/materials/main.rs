@@ -16,11 +16,9 @@ use raydsl::render::{Display, ToneMap};
 use raydsl::shading::{Mesh, MeshAttributes, Surface};
 use raydsl_examples::args::{size, variant};
 use raydsl_examples::sheet::Sheet;
+use raydsl_examples::shown::{self, Shown};
 
-mod shown;
 mod stage;
-
-use shown::Shown;
 
 /// Render the materials of the library.
 #[derive(Debug, Parser)]

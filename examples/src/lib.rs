@@ -6,6 +6,8 @@ pub mod blob;
 pub mod blocks;
 pub mod cells;
 pub mod comparison;
+pub mod everything;
+pub mod explain;
 pub mod heat_map;
 pub mod lens;
 pub mod mesh;
@@ -15,5 +17,6 @@ pub mod raster;
 pub mod rasterizer;
 pub mod ropes;
 pub mod sheet;
+pub mod shown;
 
 pub use raydsl_scenes::{cloud, cornell, head};

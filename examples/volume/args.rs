@@ -44,6 +44,9 @@ pub(crate) struct Args {
     /// Step of the integrators that take steps, in voxels.
     #[arg(long, value_name = "VOXELS", default_value = "0.5", value_parser = length)]
     pub(crate) step: f32,
+    /// Only say how large the kernel's program is, beside one with all features.
+    #[arg(long)]
+    pub(crate) explain: bool,
     /// Picture size.
     #[arg(long, value_name = "WxH", default_value = "960x960", value_parser = size)]
     pub(crate) size: (u32, u32),

@@ -6,6 +6,7 @@
 
 mod args;
 mod cuts;
+mod everything;
 mod transfer;
 
 use std::process::ExitCode;
@@ -205,7 +206,7 @@ fn show(args: &Args, grid: &Grid<'_, f32>) -> Result<(), Failure> {
     let volume = volume(args, grid, &view)?;
     let cuts = cuts(args, &view)?;
     let (away, kept) = (cuts.away.scene()?, cuts.kept.scene()?);
-    let keeps_all = cuts.kept.is_empty();
+    let (keeps_all, cuts_nothing) = (cuts.kept.is_empty(), cuts.away.is_empty());
     let edge = (range.y - range.x) / view.voxel * 0.08;
     let method = Method::of(args, &view, edge);
     let background = vec3(0.05, 0.06, 0.08);
@@ -216,24 +217,32 @@ fn show(args: &Args, grid: &Grid<'_, f32>) -> Result<(), Failure> {
         let mut kept_part = if keeps_all { Some(ray) } else { inner.next_inside(&kept) };
         while let Some(whole) = kept_part {
             let mut outer = Cut::new(&away, whole);
-            while let Some(part) = outer.next_outside(&away) {
+            let mut part = if cuts_nothing { Some(whole) } else { outer.next_outside(&away) };
+            while let Some(ray) = part {
                 light = match method {
-                    Method::Euler(method) => volume.integrate(&method, part, light),
-                    Method::ExponentialLeft(method) => volume.integrate(&method, part, light),
-                    Method::Midpoint(method) => volume.integrate(&method, part, light),
-                    Method::MeanExtinction(method) => volume.integrate(&method, part, light),
-                    Method::PreIntegrated(method) => volume.integrate(&method, part, light),
-                    Method::Adaptive(method) => volume.integrate(&method, part, light),
-                    Method::ExactCell(method) => volume.integrate(&method, part, light),
-                    Method::ShadedCell(method) => volume.integrate(&method, part, light),
-                    Method::Labels(method) => volume.integrate(&method, part, light),
+                    Method::Euler(method) => volume.integrate(&method, ray, light),
+                    Method::ExponentialLeft(method) => volume.integrate(&method, ray, light),
+                    Method::Midpoint(method) => volume.integrate(&method, ray, light),
+                    Method::MeanExtinction(method) => volume.integrate(&method, ray, light),
+                    Method::PreIntegrated(method) => volume.integrate(&method, ray, light),
+                    Method::Adaptive(method) => volume.integrate(&method, ray, light),
+                    Method::ExactCell(method) => volume.integrate(&method, ray, light),
+                    Method::ShadedCell(method) => volume.integrate(&method, ray, light),
+                    Method::Labels(method) => volume.integrate(&method, ray, light),
                 };
+                part = if cuts_nothing { None } else { outer.next_outside(&away) };
             }
             kept_part = if keeps_all { None } else { inner.next_inside(&kept) };
         }
         Shaded { color: light.over(background), depth: light.depth, id: 0u32 }
     });
     // ANCHOR_END: kernel
+    if args.explain {
+        let recording = primary.record_frame(&view.camera(), args.size);
+        let table = everything::beside(args, &volume, &view, edge, recording);
+        println!("{}", table.map_err(|error| Failure::Usage(error.to_string()))?);
+        return Ok(());
+    }
 
     let frames =
         Frames { size: args.size, runs: args.runs, variants: &args.variants, out: &args.out };

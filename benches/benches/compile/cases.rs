@@ -78,6 +78,17 @@ pub(crate) fn all() -> Vec<Case> {
                 &[Release, debug[0], debug[1], Edit],
             )
         },
+        // The same kernel in a program that names all of the library and uses no more of it.
+        case(
+            "every_name",
+            [
+                SUNFLOWER,
+                include_str!("programs/first_kernel.rs"),
+                include_str!("programs/every_name.rs"),
+            ]
+            .join("\n"),
+            &[Release],
+        ),
         case("triangles", include_str!("programs/triangles.rs"), &[Release]),
         Case {
             edit: Some(["throughput.max_element(), 0.95)", "throughput.max_element(), 0.96)"]),

@@ -29,6 +29,8 @@ pub(crate) struct Row {
     wall_s: f64,
     /// How often it was compiled.
     runs: usize,
+    /// Bytes of the program, if there is one.
+    bytes: Option<usize>,
 }
 
 /// The rows so far.
@@ -52,8 +54,8 @@ impl Rows {
         let project = Project::new(library, is_kept)?;
         println!("{} in {}", library.display(), project.folder().display());
         println!(
-            "{:<14}{:<38}{:<10}{:>8}{:>13}{:>8}{:>8}",
-            "case", "command", "variants", "CPU s", "over scalar", "spread", "wall s"
+            "{:<14}{:<38}{:<10}{:>8}{:>13}{:>8}{:>8}{:>11}",
+            "case", "command", "variants", "CPU s", "over scalar", "spread", "wall s", "bytes"
         );
         Ok(Self { project, runs, rows: Vec::new(), has_variants: None })
     }
@@ -102,7 +104,10 @@ impl Rows {
         self.prepare(order.profile)?;
         let times = (0..self.runs).map(|_| self.project.build(order));
         let times = times.collect::<Result<Vec<Times>, String>>()?;
-        Ok(self.add(&case.name, measure.name(), variants, &times, base))
+        let has_program = measure == Measure::Release;
+        let program = has_program.then(|| self.project.executable(&case.name, order.profile));
+        let bytes = program.transpose()?.map(|program| program.len());
+        Ok(self.add(&case.name, measure.name(), variants, &times, base, bytes))
     }
 
     /// Compiles a program, and again with another number; prints a row for each.
@@ -120,8 +125,8 @@ impl Rows {
             first.push(self.project.build(order)?);
             again.push(self.project.build(Order { source: &edited, ..order })?);
         }
-        self.add(&case.name, FROM_SCRATCH.to_owned(), variants, &first, None);
-        self.add(&case.name, Measure::Edit.name(), variants, &again, None);
+        self.add(&case.name, FROM_SCRATCH.to_owned(), variants, &first, None, None);
+        self.add(&case.name, Measure::Edit.name(), variants, &again, None, None);
         Ok(())
     }
 
@@ -133,7 +138,7 @@ impl Rows {
                 Profile::Release => Measure::Release.name(),
                 Profile::Edit => FROM_SCRATCH.to_owned(),
             };
-            self.add("dependencies", command, None, &[times], None);
+            self.add("dependencies", command, None, &[times], None, None);
         }
         Ok(())
     }
@@ -174,6 +179,7 @@ impl Rows {
         variants: Option<&'static str>,
         times: &[Times],
         base: Option<f64>,
+        bytes: Option<usize>,
     ) -> Option<f64> {
         let wall: Vec<f64> = times.iter().map(|t| t.wall).collect();
         let cpu: Option<Vec<f64>> = times.iter().map(|t| t.cpu).collect();
@@ -187,6 +193,7 @@ impl Rows {
             spread: spread(cpu.as_ref().unwrap_or(&wall)),
             wall_s: median(&wall),
             runs: times.len(),
+            bytes,
         };
         print(&row);
         self.rows.push(row);
@@ -205,10 +212,11 @@ fn order<'a>(case: &'a Case, measure: Measure, variants: Option<&'a str>) -> Ord
 }
 
 fn print(row: &Row) {
-    let Row { case, command, variants, cpu_s, over_scalar_s, spread, wall_s, runs } = row;
+    let Row { case, command, variants, cpu_s, over_scalar_s, spread, wall_s, runs, bytes } = row;
+    let bytes = bytes.map_or("-".to_owned(), |bytes| bytes.to_string());
     let seconds = |s: Option<f64>| s.map_or("-".to_owned(), |s| format!("{s:.2}"));
     let (cpu_s, over_scalar_s) = (seconds(*cpu_s), seconds(*over_scalar_s));
     let spread = if *runs > 1 { format!("{:.1}%", 100.0 * spread) } else { "-".to_owned() };
     print!("{case:<14}{command:<38}{variants:<10}{cpu_s:>8}");
-    println!("{over_scalar_s:>13}{spread:>8}{wall_s:>8.2}");
+    println!("{over_scalar_s:>13}{spread:>8}{wall_s:>8.2}{bytes:>11}");
 }

@@ -12,8 +12,8 @@ macro_rules! materials {
     ($($kind:ident($t:ty)),+ $(,)?) => {
         /// A material of one of several kinds.
         #[derive(Clone, Copy, Debug, Type)]
-        pub(crate) enum Shown {
-            $($kind($t),)+
+        pub enum Shown {
+            $(#[doc = concat!("[`", stringify!($t), "`]")] $kind($t),)+
         }
 
         #[kernel]
@@ -68,7 +68,7 @@ const GOLD: ComplexIor =
     ComplexIor { n: Vec3::new(0.188, 0.543, 1.332), k: Vec3::new(3.403, 2.231, 1.869) };
 
 /// The materials with their names.
-pub(crate) fn all() -> Vec<(&'static str, Shown)> {
+pub fn all() -> Vec<(&'static str, Shown)> {
     let red = vec3(0.6, 0.08, 0.06);
     let blue = vec3(0.05, 0.2, 0.5);
     let copper = F82 { normal: vec3(0.955, 0.638, 0.538), tint: vec3(0.98, 0.85, 0.8) };
