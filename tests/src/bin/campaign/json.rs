@@ -16,6 +16,9 @@ struct Line<'a> {
     unit: &'static str,
     clause: &'a str,
     verdict: &'static str,
+    /// Why the bound is known not to hold.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    why: Option<&'static str>,
     /// How many results of packets have other bits than the scalar variant's.
     other_bits: u64,
 }
@@ -32,7 +35,12 @@ pub(crate) fn report(all: &[Measured]) -> serde_json::Result<Vec<u8>> {
                 bound: row.bound_of(found),
                 unit: row.unit.name(),
                 clause: group.clauses[row.clause - 1],
-                verdict: if row.keeps(found) { "holds" } else { "fails" },
+                verdict: match (row.keeps(found), row.miss) {
+                    (true, _) => "holds",
+                    (false, Some(_)) => "misses",
+                    (false, None) => "fails",
+                },
+                why: row.miss,
                 other_bits: outcome.other_bits,
             }));
         }

@@ -31,7 +31,7 @@ fn main() -> ExitCode {
     match run(&Args::parse()) {
         Ok(true) => ExitCode::SUCCESS,
         Ok(false) => {
-            eprintln!("campaign: a bound does not hold");
+            eprintln!("campaign: a bound does not hold, and is not known to");
             ExitCode::FAILURE
         }
         Err(error) => {
@@ -70,7 +70,11 @@ fn run(args: &Args) -> Result<bool, Box<dyn Error>> {
     if all.is_empty() {
         return Err("no row has this name; --list names them".into());
     }
-    Ok(all.iter().flat_map(|measured| &measured.rows).all(|(row, outcome)| row.holds(outcome)))
+    let rows = || all.iter().flat_map(|measured| &measured.rows);
+    let held = rows().filter(|(row, outcome)| row.holds(outcome)).count();
+    let missed = rows().filter(|(row, outcome)| row.is_known_miss(outcome)).count();
+    println!("{held} of {} rows hold, {missed} miss their bound as is known", rows().count());
+    Ok(held + missed == rows().count())
 }
 
 /// Writes the files that are asked for.

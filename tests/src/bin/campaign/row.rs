@@ -87,6 +87,8 @@ pub(crate) struct Row {
     pub(crate) bound: Bound,
     /// Inputs, as a share of `--count`.
     pub(crate) share: f64,
+    /// Why the bound is known not to hold.
+    pub(crate) miss: Option<&'static str>,
     pub(crate) measure: Measure,
 }
 
@@ -99,12 +101,18 @@ impl Row {
         measure: impl Fn(&Run) -> Result<Outcome, Box<dyn Error>> + 'static,
     ) -> Self {
         let (name, measure) = (name.into(), Box::new(measure));
-        Self { name, clause, unit, bound, share: 1.0, measure }
+        Self { name, clause, unit, bound, share: 1.0, miss: None, measure }
     }
 
     /// The same with this share of the inputs, for those that cost more.
     pub(crate) fn share(self, share: f64) -> Self {
         Self { share, ..self }
+    }
+
+    /// The same with a bound that is known not to hold, and why. The table lists it with its figure;
+    /// packets with other bits are never excused.
+    pub(crate) fn misses(self, why: &'static str) -> Self {
+        Self { miss: Some(why), ..self }
     }
 
     /// Its name among all rows.
@@ -126,10 +134,20 @@ impl Row {
         outcome.other_bits == 0 && outcome.found.iter().all(|found| self.keeps(found))
     }
 
-    /// The inputs of what broke the promise, in words.
+    /// Whether the bound is missed as it is known to be.
+    pub(crate) fn is_known_miss(&self, outcome: &Outcome) -> bool {
+        self.miss.is_some() && outcome.other_bits == 0 && !self.holds(outcome)
+    }
+
+    /// The inputs of what broke the promise, in words; why, if that is known.
     pub(crate) fn examples<'o>(&self, outcome: &'o Outcome) -> Vec<&'o str> {
         if self.holds(outcome) {
             return Vec::new();
+        }
+        if let Some(why) = self.miss
+            && outcome.other_bits == 0
+        {
+            return vec![why];
         }
         let broke = outcome.found.iter().filter(|found| !self.keeps(found));
         let of_bits = outcome.first_other_bits.as_deref();

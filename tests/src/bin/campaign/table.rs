@@ -84,6 +84,18 @@ pub(crate) fn markdown(all: &[Measured]) -> String {
                 verdict(row, outcome),
             );
         }
+        let misses = rows.iter().filter(|(row, outcome)| row.is_known_miss(outcome));
+        let mut reasons: Vec<(&str, Vec<&str>)> = Vec::new();
+        for (row, _) in misses {
+            let Some(why) = row.miss else { continue };
+            match reasons.iter_mut().find(|reason| reason.0 == why) {
+                Some(reason) => reason.1.push(&row.name),
+                None => reasons.push((why, vec![&row.name])),
+            }
+        }
+        for (why, names) in reasons {
+            let _ = writeln!(text, "\n*{}*: {why}", names.join("*, *"));
+        }
         let _ = writeln!(text, "<!-- ANCHOR_END: {} -->\n", group.name);
     }
     text
@@ -115,12 +127,14 @@ fn bound(row: &Row) -> String {
     format!("{}/{}", figure(bound.cpu), figure(bound.wgsl))
 }
 
-/// `BITS` if packets have other bits than the scalar variant.
+/// `miss` of a bound that is known not to hold, `BITS` if packets have other bits than the scalar variant.
 pub(crate) fn verdict(row: &Row, outcome: &Outcome) -> &'static str {
     if row.holds(outcome) {
         "holds"
     } else if outcome.other_bits > 0 {
         "BITS"
+    } else if row.is_known_miss(outcome) {
+        "miss"
     } else {
         "FAILS"
     }
