@@ -35,12 +35,12 @@ pub(crate) fn report(all: &[Measured]) -> serde_json::Result<Vec<u8>> {
                 bound: row.bound_of(found),
                 unit: row.unit.name(),
                 clause: group.clauses[row.clause - 1],
-                verdict: match (row.keeps(found), row.miss) {
+                verdict: match (row.keeps(found), row.is_known_miss(outcome)) {
                     (true, _) => "holds",
-                    (false, Some(_)) => "misses",
-                    (false, None) => "fails",
+                    (false, true) => "misses",
+                    (false, false) => "fails",
                 },
-                why: row.miss,
+                why: row.miss.as_ref().map(|miss| miss.why),
                 other_bits: outcome.other_bits,
             }));
         }

@@ -74,6 +74,13 @@ impl Bound {
     }
 }
 
+/// A bound that does not hold.
+pub(crate) struct Miss {
+    /// What figures are up to.
+    within: Bound,
+    pub(crate) why: &'static str,
+}
+
 /// Measures a row.
 type Measure = Box<dyn Fn(&Run) -> Result<Outcome, Box<dyn Error>>>;
 
@@ -87,8 +94,8 @@ pub(crate) struct Row {
     pub(crate) bound: Bound,
     /// Inputs, as a share of `--count`.
     pub(crate) share: f64,
-    /// Why the bound is known not to hold.
-    pub(crate) miss: Option<&'static str>,
+    /// What is known of a bound that does not hold.
+    pub(crate) miss: Option<Miss>,
     pub(crate) measure: Measure,
 }
 
@@ -109,10 +116,10 @@ impl Row {
         Self { share, ..self }
     }
 
-    /// The same with a bound that is known not to hold, and why. The table lists it with its figure;
-    /// packets with other bits are never excused.
-    pub(crate) fn misses(self, why: &'static str) -> Self {
-        Self { miss: Some(why), ..self }
+    /// The same with a bound that is known not to hold, and why; figures are up to `within`, and faults
+    /// that share of the inputs. The table lists the row with its figure, and larger ones fail.
+    pub(crate) fn misses(self, within: Bound, why: &'static str) -> Self {
+        Self { miss: Some(Miss { within, why }), ..self }
     }
 
     /// Its name among all rows.
@@ -136,7 +143,13 @@ impl Row {
 
     /// Whether the bound is missed as it is known to be.
     pub(crate) fn is_known_miss(&self, outcome: &Outcome) -> bool {
-        self.miss.is_some() && outcome.other_bits == 0 && !self.holds(outcome)
+        let Some(miss) = &self.miss else { return false };
+        let is_within = |found: &Found| {
+            let scale = if self.unit == Unit::Faults { found.count as f64 } else { 1.0 };
+            found.worst <= miss.within.of(found.variant) * scale
+        };
+        let is_known = |found: &Found| self.keeps(found) || is_within(found);
+        !self.holds(outcome) && outcome.other_bits == 0 && outcome.found.iter().all(is_known)
     }
 
     /// The inputs of what broke the promise, in words; why, if that is known.
@@ -144,10 +157,10 @@ impl Row {
         if self.holds(outcome) {
             return Vec::new();
         }
-        if let Some(why) = self.miss
-            && outcome.other_bits == 0
+        if let Some(miss) = &self.miss
+            && self.is_known_miss(outcome)
         {
-            return vec![why];
+            return vec![miss.why];
         }
         let broke = outcome.found.iter().filter(|found| !self.keeps(found));
         let of_bits = outcome.first_other_bits.as_deref();

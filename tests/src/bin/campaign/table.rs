@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use crate::Measured;
 use crate::outcome::{Found, Outcome};
-use crate::row::{Group, Row, Unit};
+use crate::row::{Group, Miss, Row, Unit};
 
 /// The head of a group's table.
 pub(crate) fn head(group: &Group) -> String {
@@ -87,7 +87,7 @@ pub(crate) fn markdown(all: &[Measured]) -> String {
         let misses = rows.iter().filter(|(row, outcome)| row.is_known_miss(outcome));
         let mut reasons: Vec<(&str, Vec<&str>)> = Vec::new();
         for (row, _) in misses {
-            let Some(why) = row.miss else { continue };
+            let Some(Miss { why, .. }) = row.miss else { continue };
             match reasons.iter_mut().find(|reason| reason.0 == why) {
                 Some(reason) => reason.1.push(&row.name),
                 None => reasons.push((why, vec![&row.name])),

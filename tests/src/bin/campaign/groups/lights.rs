@@ -102,23 +102,26 @@ fn seen_from(rng: &mut Source) -> ([Vec3; 3], Vec3) {
     }
 }
 
-fn angle_of_sphere(light: &AnyLight, from: Vec3) -> f64 {
-    let AnyLight::Sphere(light) = light else { return f64::NAN };
+fn angle_of_sphere(light: &AnyLight, from: Vec3) -> Option<f64> {
+    let AnyLight::Sphere(light) = light else { return None };
     let (radius, way) = (f64::from(light.shape.radius), (light.shape.center - from).as_dvec3());
     let sine2 = radius * radius / way.length_squared();
-    2.0 * PI * sine2 / (1.0 + (1.0 - sine2).sqrt())
+    Some(2.0 * PI * sine2 / (1.0 + (1.0 - sine2).sqrt()))
 }
 
-fn angle_of_triangles(light: &AnyLight, from: Vec3) -> f64 {
-    match light {
+/// Of triangles and rectangles; smaller ones are sampled by area, and larger ones by the hemisphere.
+fn angle_of_triangles(light: &AnyLight, from: Vec3) -> Option<f64> {
+    const SAMPLED: std::ops::Range<f64> = 1.01e-4..6.1;
+    let angle = match light {
         AnyLight::Triangle(AreaLight { shape: t, .. }) => solid_angle(from, [t.v0, t.v1, t.v2]),
         AnyLight::Rectangle(AreaLight { shape: r, .. }) => {
             let (a, b) = (r.corner + r.u_edge, r.corner + r.v_edge);
             let far = a + r.v_edge;
             solid_angle(from, [r.corner, a, b]) + solid_angle(from, [a, far, b])
         }
-        _ => f64::NAN,
-    }
+        _ => return None,
+    };
+    Some(angle).filter(|angle| SAMPLED.contains(angle))
 }
 
 /// Van Oosterom and Strackee ("The Solid Angle of a Plane Triangle", 1983).
@@ -135,7 +138,7 @@ fn solid_angle(from: Vec3, corners: [Vec3; 3]) -> f64 {
 /// sampled by that.
 fn density(
     name: &'static str,
-    angle: Option<fn(&AnyLight, Vec3) -> f64>,
+    angle: Option<fn(&AnyLight, Vec3) -> Option<f64>>,
     draw: fn(&mut Source) -> (AnyLight, Vec3),
 ) -> Row {
     Row::new(name, 1, Unit::Relative, Bound::all(1e-4), move |run| {
@@ -146,7 +149,8 @@ fn density(
         run.measure(&[Kernel::of::<lit>()], make, |(light, from, _), found| {
             let (pdf, again) = (f64::from(found.pdf), f64::from(found.again));
             let off = (again - pdf).abs() / pdf;
-            let of_angle = angle.map(|angle| (pdf * angle(light, *from) - 1.0).abs());
+            let of_angle = angle.and_then(|angle| angle(light, *from));
+            let of_angle = of_angle.map(|angle| (pdf * angle - 1.0).abs());
             // A NaN is not the lesser of two.
             Some(off + of_angle.unwrap_or(0.0))
         })

@@ -228,7 +228,7 @@ fn distances(name: String, spheres: Spheres) -> Row {
 /// The length of a normal, in eps.
 fn lengths(far: f32) -> Row {
     let name = format!("length of a normal at {far:e} radii");
-    Row::new(name, 3, Unit::Times, Bound::all(2.0), move |run| {
+    let row = Row::new(name, 3, Unit::Times, Bound::all(2.0), move |run| {
         let spheres = Spheres::at(far);
         run.measure(
             &[kernel()],
@@ -238,7 +238,12 @@ fn lengths(far: f32) -> Row {
                 met.hit.is_hit.then(|| (dot(n, n).sqrt() - 1.0).abs() / EPS)
             },
         )
-    })
+    });
+    row.misses(
+        Bound::all(2.6),
+        "A normal is the offset from the centre over its length: the sum of squares, the root and the \
+         quotients are rounded.",
+    )
 }
 
 /// The textbook's normal is that of the point at the distance of the hit.

@@ -142,5 +142,13 @@ fn planes(name: &'static str, count: usize) -> Row {
             fault((inside, outside) != expected)
         })
     });
-    row.share(0.2)
+    let row = row.share(0.2);
+    if count == 1 {
+        return row;
+    }
+    row.misses(
+        Bound::all(0.5),
+        "Crossings alone do not tell whether a ray that leaves one half-space as it enters another \
+         was outside of both before.",
+    )
 }

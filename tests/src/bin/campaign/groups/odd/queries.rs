@@ -123,7 +123,7 @@ fn from_inside(rng: &mut Rng, radius: f32) -> (Ray, Vec3, f32) {
 /// `t` times the length of the direction is the distance.
 fn sphere_along(length: f32) -> Row {
     let name = format!("sphere, direction {length:e} long");
-    Row::new(name, 3, Unit::Times, Bound::all(1.0), move |run| {
+    let row = Row::new(name, 3, Unit::Times, Bound::all(1.0), move |run| {
         let make = move |rng: &mut Rng| {
             let center = rng.point(2.0);
             let way = rng.direction().normalize();
@@ -136,7 +136,12 @@ fn sphere_along(length: f32) -> Row {
             let error = exact.error_of_distance(&met.hit);
             Some(if exact.is_met()? == met.hit.is_hit { error } else { f64::INFINITY })
         })
-    })
+    });
+    row.misses(
+        Bound::all(f64::INFINITY),
+        "The square of the direction's length is not in the range of `f32`: the range that \
+         `sphere::intersect` documents is 1e-18 to 1e18.",
+    )
 }
 
 /// The distance is off by at most 16 eps of the farthest coordinate, over the cosine.
