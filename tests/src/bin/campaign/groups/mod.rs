@@ -54,16 +54,19 @@ fn fault(is_wrong: bool) -> Option<f64> {
     Some(f64::from(u8::from(is_wrong)))
 }
 
+/// A kernel for the closest hit of a ray.
+type Closest<'a> = Kernel<'a, (Ray,), Hit>;
+
 /// Gives `work` a kernel for the closest hit in a tree of triangles. A kernel takes long to compile:
 /// rows share this one.
-fn closest<T>(bvh: &Bvh<'_, Triangle>, work: impl FnOnce(&Kernel<'_, (Ray,), Hit>) -> T) -> T {
+fn closest<T>(bvh: &Bvh<'_, Triangle>, work: impl FnOnce(&Closest<'_>) -> T) -> T {
     let (mut work, mut result) = (Some(work), None);
     with_kernel(bvh, &mut |kernel| result = work.take().map(|work| work(kernel)));
     result.expect("the kernel is given once")
 }
 
 /// Not generic, so that it is compiled once.
-fn with_kernel(bvh: &Bvh<'_, Triangle>, work: &mut dyn FnMut(&Kernel<'_, (Ray,), Hit>)) {
+fn with_kernel(bvh: &Bvh<'_, Triangle>, work: &mut dyn FnMut(&Closest<'_>)) {
     work(&kernel!(|ray: Ray| bvh.closest_hit(ray)));
 }
 
