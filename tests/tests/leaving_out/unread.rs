@@ -40,10 +40,10 @@ impl Walk {
         before
     }
 
-    fn swap(&mut self) {
+    fn turn(&mut self) {
         let at = self.at;
         self.at = self.step;
-        self.step = at;
+        self.step = -at;
     }
 }
 
@@ -76,7 +76,7 @@ fn swapped(step: f32, limit: f32, count: u32) -> f32 {
         let next = if i % 3 == 0 { last } else { walk };
         last = walk;
         walk = next;
-        walk.swap();
+        walk.turn();
     }
     last.at * 2.0 + walk.at
 }
