@@ -13,7 +13,7 @@ const PLOT: (f64, f64) = (330.0, 250.0);
 const LEFT: f64 = 62.0;
 const TOP: f64 = 34.0;
 const BOTTOM: f64 = 46.0;
-const LINE: f64 = 16.0;
+const LINE: f64 = 19.0;
 
 /// A curve, with its name in the legend.
 pub(crate) struct Curve {

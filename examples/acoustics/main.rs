@@ -36,7 +36,6 @@ use raydsl::bvh::BuildError;
 use raydsl::kernel::Kernel;
 use raydsl::prelude::*;
 use raydsl_examples::batches::{Batches, CompareError};
-use raydsl_examples::raster::raster;
 use raydsl_report::work_precision::Color;
 use room::{Room, SPEED};
 
@@ -102,13 +101,14 @@ fn run(args: &Args) -> Result<(), Failure> {
     };
     times(&room, args.bin * 1e-3, &truth, &last.response);
 
-    let picture = raster(&curves::drawing(&panels(&room, args, &truth, &steps)), 1);
+    let drawing = curves::drawing(&panels(&room, args, &truth, &steps));
     let path = args.folder.join("acoustics.png");
     let write = |path: &PathBuf, result: Result<(), String>| {
         result.map_err(|reason| Failure::Write { path: path.clone(), reason })
     };
     write(&args.folder, fs::create_dir_all(&args.folder).map_err(|e| e.to_string()))?;
-    write(&path, picture.save(&path).map_err(|e| e.to_string()))
+    let picture = drawing.png(1.0).map_err(|e| e.to_string());
+    write(&path, picture.and_then(|file| fs::write(&path, file).map_err(|e| e.to_string())))
 }
 
 /// The first of the bins whose errors are taken.

@@ -3,22 +3,23 @@
 use std::path::PathBuf;
 use std::time::Duration;
 
-use clap::{Parser, ValueEnum};
+use clap::Parser;
 use raydsl_examples::args::seconds;
 use raydsl_report::work_precision::Backend;
 
 /// Error against run time.
 #[derive(Parser)]
 pub(crate) struct Args {
-    /// A case, `all`, or `list`.
+    /// A case, a family of cases, `all`, or `list`.
     #[arg(default_value = "list")]
     pub(crate) case: String,
-    /// The knob that is turned: samples of each pixel, or steps. Cases without it are left out.
-    #[arg(long, value_enum, default_value_t = Knob::Spp)]
-    pub(crate) knob: Knob,
-    /// Its values, rising; 64,256,1024,4096 samples or 2,4,8,16,32 steps without this.
+    /// Only cases with this knob: `spp`, samples of each pixel, `step`, steps along a ray, or another
+    /// that `list` names.
+    #[arg(long, value_name = "NAME")]
+    pub(crate) knob: Option<String>,
+    /// Values of the knob, rising; each case's own without this.
     #[arg(long, value_name = "LIST", value_delimiter = ',')]
-    values: Vec<u32>,
+    pub(crate) values: Vec<u32>,
     /// Methods, by name; all of each case without this. Cases that have none are left out.
     #[arg(long, value_name = "LIST", value_delimiter = ',')]
     pub(crate) methods: Vec<String>,
@@ -43,36 +44,6 @@ pub(crate) struct Args {
     /// Folder of the results.
     #[arg(long, value_name = "DIR", default_value = "out/report")]
     pub(crate) out: PathBuf,
-}
-
-/// What makes a case better and slower.
-#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(crate) enum Knob {
-    /// Samples of each pixel.
-    Spp,
-    /// Steps along a ray.
-    Step,
-}
-
-impl Knob {
-    /// What cases call it.
-    pub(crate) const fn name(self) -> &'static str {
-        match self {
-            Self::Spp => "spp",
-            Self::Step => "step",
-        }
-    }
-}
-
-impl Args {
-    /// The knob's values.
-    pub(crate) fn values(&self) -> &[u32] {
-        match self.knob {
-            _ if !self.values.is_empty() => &self.values,
-            Knob::Spp => &[64, 256, 1024, 4096],
-            Knob::Step => &[2, 4, 8, 16, 32],
-        }
-    }
 }
 
 fn backend(name: &str) -> Result<Backend, String> {

@@ -9,7 +9,7 @@ use raydsl_report::work_precision::{
     Backend, Case, Estimates, Method, Order, Reference, Run, Work,
 };
 
-use crate::visibility::Ball;
+use crate::visibility::{Ball, SAMPLES};
 
 /// The film's edge in pixels: the reference has as many numbers.
 pub(crate) const EDGE: u32 = 16;
@@ -83,6 +83,8 @@ pub(crate) fn case(samples: u32) -> Result<Case<'static>, Box<dyn core::error::E
     Ok(Case::new("cloud", reference, move |run| estimate(cloud, run))
         .counted(move |run| work(cloud, run))
         .built_in(build)
+        .values(&SAMPLES)
+        .family("openness")
         .method(SampleMethod::Random, Some(Order::RANDOM))
         .method(SampleMethod::Stratified, None)
         .method(SampleMethod::Sobol, None))

@@ -6,6 +6,8 @@ use raydsl::kernel;
 use raydsl::prelude::*;
 use raydsl_report::work_precision::{Case, Order, Reference, Work};
 
+use crate::visibility::SAMPLES;
+
 /// Light of unit radiance through a point of a lamp, per density of 1 over `area`.
 #[kernel]
 pub(crate) fn from_lamp(point: Vec3, normal: Vec3, area: f32, has_cosine: bool) -> f32 {
@@ -105,6 +107,8 @@ fn case(name: &str, which: u32, exact: f64, sobol: Order) -> Case<'static> {
     })
     // Lamps are sampled, and nothing stands between.
     .counted(|_| Work::NOTHING)
+    .values(&SAMPLES)
+    .family("smooth")
     .method(SampleMethod::Random, Some(Order::RANDOM))
     .method(SampleMethod::Stratified, Some(Order::near(-1.0, 0.1)))
     .method(SampleMethod::Sobol, Some(sobol))

@@ -60,7 +60,8 @@ pub(crate) fn case() -> Case<'static> {
         let counted = found.samples * u64::from(steps) * gradients;
         Ok(Estimates { counted: Some(counted), ..found })
     });
-    let case = case.knob("step").counted(|_| Work::NOTHING);
+    let case = case.knob("step").values(&[2, 4, 8, 16, 32]).family("curved-rays");
+    let case = case.counted(|_| Work::NOTHING);
     INTEGRATORS
         .iter()
         .fold(case, |case, (name, _, order)| case.method(*name, Some(Order::near(*order, 0.15))))

@@ -1,41 +1,41 @@
-//! Error against run time of random, stratified and Sobol samples, by every variant, on integrals
-//! whose results are known. Learn here how to measure a kernel of your own so.
+//! Error against run time of every method of the library, by every variant, where results are known.
+//! Learn here how to measure a kernel of your own so.
 //!
 //! `cargo run --release --example report -- P-AO2` writes `work_precision.svg` and `.png`,
 //! `points.csv`, `report.json`, `table.txt`, `errors.txt` and `omissions.md` to `out/report`; `all`
-//! measures every case with a knob of samples, with `--knob step` every one with steps; `list`
-//! names them. With `RAYDSL_DATA` set there are two scenes from files.
+//! measures every case, each with its own knob, and writes a table `choice_FAMILY.txt` for each
+//! family of cases; `list` names both. With `RAYDSL_DATA` set there are scenes from files.
 
 mod args;
+mod arithmetic;
+mod builders;
 mod cloud;
 mod files;
+mod filters;
+#[path = "../bvh_cost/hall.rs"]
+mod hall;
+mod lamps;
 mod light;
+mod lines;
 mod luneburg;
 mod open;
 mod paths;
 mod quadrature;
+mod registry;
+mod strategies;
 mod textured;
+mod transmittance;
 mod visibility;
 mod volumes;
 
 use std::error::Error;
 use std::process::{Command, ExitCode};
 
-use args::{Args, Knob};
+use args::Args;
 use clap::Parser;
-use raydsl_examples::raster::raster;
 use raydsl_examples::{cornell, lens};
 use raydsl_report::work_precision::{Case, Method, WorkPrecision};
-
-/// Of each pixel of each half of the cloud's reference: a second or two.
-const CLOUD_SAMPLES: u32 = 16_384;
-/// The same of scenes from files, whose every sample has two rays.
-const FILE_SAMPLES: u32 = 4096;
-/// Of paths, of several rays each.
-const PATH_SAMPLES: u32 = 16_384;
-
-/// How to make a case.
-type Make = Box<dyn Fn() -> Result<Case<'static>, Box<dyn Error>>>;
+use registry::{Entry, entries};
 
 fn main() -> ExitCode {
     match run(&Args::parse()) {
@@ -45,27 +45,6 @@ fn main() -> ExitCode {
             ExitCode::from(2)
         }
     }
-}
-
-/// Those whose references take a while, by name; all have a knob of samples. They are made only if
-/// they are measured.
-fn slow_cases() -> [(&'static str, Make); 5] {
-    let path = |name| -> Make { Box::new(move || paths::case(name, PATH_SAMPLES)) };
-    let [cornell, plates] = paths::NAMES;
-    [
-        ("cloud", Box::new(|| cloud::case(CLOUD_SAMPLES))),
-        ("scene", Box::new(|| open::case("scene", files::scene()?, FILE_SAMPLES))),
-        ("scan", Box::new(|| open::case("scan", files::scan()?, FILE_SAMPLES))),
-        (cornell, path(cornell)),
-        (plates, path(plates)),
-    ]
-}
-
-fn quick_cases() -> Vec<Case<'static>> {
-    let last = vec![quadrature::case(), luneburg::case()];
-    let all =
-        [visibility::cases(), light::cases(), textured::cases(), last, volumes::cases(cloud::EDGE)];
-    all.into_iter().flatten().collect()
 }
 
 /// The cases that are asked for, and the names of others with why they are left out.
@@ -78,70 +57,69 @@ struct Chosen {
 impl Chosen {
     /// One that is asked for by its name must be measured.
     fn of(args: &Args) -> Result<Self, Box<dyn Error>> {
-        let is_asked_for = |name: &str| args.case == "all" || args.case == name;
+        let asked = args.case.as_str();
+        let is_asked_for = |e: &Entry| asked == "all" || [e.family, &e.name].contains(&asked);
         let mut chosen = Self::default();
-        for case in quick_cases().into_iter().filter(|c| is_asked_for(c.name())) {
-            chosen.add(args, case);
-        }
-        for (name, make) in slow_cases().into_iter().filter(|(name, _)| is_asked_for(name)) {
-            if args.knob != Knob::Spp {
-                chosen.left_out.push((name.to_owned(), without(args.knob, "spp")));
-                continue;
-            }
-            match make() {
-                Ok(case) => chosen.add(args, case),
-                Err(why) => chosen.left_out.push((name.to_owned(), why.to_string())),
+        for entry in entries().into_iter().filter(is_asked_for) {
+            let name = entry.name.clone();
+            match case_of(entry, args) {
+                Ok(case) => chosen.cases.push(case),
+                Err(why) => chosen.left_out.push((name, why.to_string())),
             }
         }
         match (chosen.cases.is_empty(), &chosen.left_out[..]) {
-            (true, []) => Err(format!("no case is `{}`; `list` names them", args.case).into()),
+            (true, []) => Err(format!("no case is `{asked}`; `list` names them").into()),
             (true, [(case, why), ..]) => Err(format!("case `{case}`: {why}").into()),
             _ => Ok(chosen),
         }
     }
 
-    /// Unless it has another knob, or other methods.
-    fn add(&mut self, args: &Args, case: Case<'static>) {
-        let is_chosen = |name: &str| args.methods.iter().any(|m| m == name);
-        let why = if case.knob_name() != args.knob.name() {
-            without(args.knob, case.knob_name())
-        } else if !args.methods.is_empty() && !case.methods().any(|m| is_chosen(m.name())) {
-            let names: Vec<&str> = case.methods().map(Method::name).collect();
-            format!("none of the methods asked for is one of {}", names.join(", "))
-        } else {
-            self.cases.push(case);
-            return;
-        };
-        self.left_out.push((case.name().to_owned(), why));
+    /// One list of values fits one knob.
+    fn check_values(&self, args: &Args) -> Result<(), String> {
+        let mut knobs: Vec<&str> = self.cases.iter().map(Case::knob_name).collect();
+        knobs.sort_unstable();
+        knobs.dedup();
+        if args.values.is_empty() || knobs.len() == 1 {
+            return Ok(());
+        }
+        Err(format!("`--values` with the knobs {}: choose one by `--knob`", knobs.join(", ")))
     }
 }
 
-fn without(asked_for: Knob, own: &str) -> String {
-    format!("its knob is `{own}`, not `{}`", asked_for.name())
+/// The case, unless it has another knob, or other methods.
+fn case_of(entry: Entry, args: &Args) -> Result<Case<'static>, Box<dyn Error>> {
+    if let Some(knob) = args.knob.as_ref().filter(|k| **k != entry.knob) {
+        return Err(format!("its knob is `{}`, not `{knob}`", entry.knob).into());
+    }
+    let case = (entry.make)()?;
+    let is_chosen =
+        |m: &Method| args.methods.is_empty() || args.methods.iter().any(|n| n == m.name());
+    if case.methods().any(is_chosen) {
+        return Ok(case);
+    }
+    let names: Vec<&str> = case.methods().map(Method::name).collect();
+    Err(format!("none of the methods asked for is one of {}", names.join(", ")).into())
 }
 
-/// The names of all cases, by knob.
+/// The names of all cases, by family, with their knobs.
 fn list() -> String {
-    let quick = quick_cases();
-    let of = |knob: Knob| {
-        let has_it = |c: &&Case<'_>| c.knob_name() == knob.name();
-        let names: Vec<&str> = quick.iter().filter(has_it).map(Case::name).collect();
-        names.join(", ")
-    };
-    let slow = slow_cases().map(|(name, _)| name).join(", ");
-    format!(
-        "all, or one of\n--knob spp: {}, {slow}\n--knob step: {}",
-        of(Knob::Spp),
-        of(Knob::Step)
-    )
+    let entries = entries();
+    let mut text = "all, or a family, or one of its cases:\n".to_owned();
+    for group in entries.chunk_by(|a, b| a.family == b.family && a.knob == b.knob) {
+        let names: Vec<&str> = group.iter().map(|e| e.name.as_str()).collect();
+        text += &format!("{} (knob {}): {}\n", group[0].family, group[0].knob, names.join(", "));
+    }
+    text
 }
 
 fn run(args: &Args) -> Result<(), Box<dyn Error>> {
     if args.case == "list" {
-        println!("{}", list());
+        print!("{}", list());
         return Ok(());
     }
-    let Chosen { cases, left_out } = Chosen::of(args)?;
+    let chosen = Chosen::of(args)?;
+    chosen.check_values(args)?;
+    let Chosen { cases, left_out } = chosen;
     let mut settings = WorkPrecision::new();
     if let Some(commit) = args.commit.clone().or_else(commit) {
         settings = settings.commit(commit);
@@ -150,19 +128,18 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
         let names: Vec<&str> = args.methods.iter().map(String::as_str).collect();
         settings = settings.methods(&names);
     }
+    if !args.values.is_empty() {
+        settings = settings.knobs(&args.values);
+    }
     settings = left_out.into_iter().fold(settings, |all, (case, why)| all.omit(case, why));
     let report = settings
-        .knobs(args.values())
         .backends(&args.variants)
         .repetitions(args.repetitions)
         .time(args.time)
         .size(cloud::EDGE, cloud::EDGE)
         .progress(|what| eprintln!("{what}"))
         .run(&cases)?;
-    let plots = report.write(&args.out)?;
-    for (path, case) in plots.iter().zip(&report.cases) {
-        raster(&case.plot(), 2).save(path.with_extension("png"))?;
-    }
+    let _plots = report.write(&args.out)?;
     println!("{}\n{}", report.table(), report.errors());
     println!("{}", args.out.display());
     Ok(())

@@ -11,7 +11,7 @@ use raydsl_report::Missing;
 use raydsl_report::work_precision::{Case, Estimates, Order, Run, Work};
 
 use crate::cloud::halves;
-use crate::visibility::Ball;
+use crate::visibility::{Ball, SAMPLES};
 
 #[raydsl::kernel]
 impl Surface for Ball {
@@ -83,6 +83,8 @@ pub(crate) fn case<P: Primitive<Hit = Hit, Shared = ()> + Surface + Sync + 'stat
     Ok(Case::new(name, reference, move |run| view.estimate(run))
         .counted(move |run| view.work(run))
         .built_in(build)
+        .values(&SAMPLES)
+        .family("openness")
         .method(SampleMethod::Random, Some(Order::RANDOM))
         .method(SampleMethod::Stratified, None)
         .method(SampleMethod::Sobol, None))

@@ -68,7 +68,8 @@ pub(crate) fn case() -> Case<'static> {
         let look_ups = found.samples * u64::from(steps) * RULES[rule].1;
         Ok(Estimates { counted: Some(look_ups), ..found })
     });
-    let case = case.knob("step").counted(|_| Work::NOTHING);
+    let case = case.knob("step").values(&[2, 4, 8, 16, 32]).family("quadrature");
+    let case = case.counted(|_| Work::NOTHING);
     RULES
         .iter()
         .fold(case, |case, (name, _, order)| case.method(*name, Some(Order::near(*order, 0.15))))

@@ -6,6 +6,7 @@ use raydsl::texture::Filter;
 use raydsl_report::work_precision::{Case, Order, Reference, Work};
 
 use crate::light::from_lamp;
+use crate::visibility::SAMPLES;
 
 /// A dark surface with some bright places.
 const TEXELS: [f32; 20] = [
@@ -75,6 +76,8 @@ fn case(name: &str, exact: f64, is_lamp: bool, filter: Filter) -> Case<'static> 
         }))
     })
     .counted(|run| run.integral_work(|_| Work { texture_fetches: Some(1), ..Work::NOTHING }))
+    .values(&SAMPLES)
+    .family("smooth")
     .method(SampleMethod::Random, Some(Order::RANDOM))
 }
 

@@ -4,6 +4,9 @@ use raydsl::kernel;
 use raydsl::prelude::*;
 use raydsl_report::work_precision::{Case, Order, Reference, Work};
 
+/// Samples of each pixel.
+pub(crate) const SAMPLES: [u32; 4] = [64, 256, 1024, 4096];
+
 /// A disk.
 #[primitive(disk(center, normal, radius))]
 pub(crate) struct Disc {
@@ -144,6 +147,8 @@ fn case(scene: Scene) -> Case<'static> {
             Work { texture_fetches: Some(0), ..cost.into() }
         })
     })
+    .values(&SAMPLES)
+    .family("edges")
     .method(SampleMethod::Random, Some(Order::RANDOM))
     .method(SampleMethod::Stratified, edge)
     .method(SampleMethod::Sobol, edge)

@@ -1,9 +1,9 @@
-//! Light in volumes by rules of steps: three transfer functions of one field, and a knob of steps.
+//! Light in volumes by all integrators: three transfer functions of one field, and a knob of steps.
 
 use raydsl::prelude::*;
 use raydsl::volume::{
-    Euler, ExactCell, ExponentialLeft, Grid, GridConfig, MeanExtinction, Midpoint, PreIntegrated,
-    TransferFunction, Volume, VolumeLight,
+    Adaptive, Euler, ExactCell, ExponentialLeft, Grid, GridConfig, MeanExtinction, Midpoint,
+    PreIntegrated, TransferFunction, Volume, VolumeLight,
 };
 use raydsl_report::Missing;
 use raydsl_report::work_precision::{
@@ -20,6 +20,9 @@ pub(crate) const RULES: [(&str, u64, f64); 5] = [
     ("mean-extinction", 2, -2.0),
     ("pre-integrated", 2, -2.0),
 ];
+
+/// Names of integrators without steps: to a tolerance, and without a choice.
+pub(crate) const OTHERS: [&str; 2] = ["adaptive", "exact-cell"];
 
 /// Names of the cases.
 pub(crate) const FIELDS: [&str; 3] = ["volume-smooth", "volume-spike", "volume-shell"];
@@ -52,9 +55,9 @@ fn function(name: &str) -> TransferFunction {
     TransferFunction::from_extinction(&colors, extinctions).expect("sorted knots")
 }
 
-type View = Volume<'static, f32>;
+pub(crate) type View = Volume<'static, f32>;
 
-fn camera() -> Pinhole {
+pub(crate) fn camera() -> Pinhole {
     Pinhole::new(vec3(1.9, 2.6, 1.4), Vec3::ZERO, Vec3::Z, 0.5)
 }
 
@@ -68,7 +71,8 @@ macro_rules! seen {
     }};
 }
 
-/// A knob of 2 is a step of the length of a cell.
+/// A knob of 2 is a step of the length of a cell, or a tolerance of 0.02 that falls with its square, as
+/// the error of rules of the second order does.
 fn estimate(run: &Run<'_>, volume: &View) -> Result<Estimates, Missing> {
     let step = 4.0 / (CELLS * run.knob()) as f32;
     let name = run.method().name();
@@ -77,51 +81,67 @@ fn estimate(run: &Run<'_>, volume: &View) -> Result<Estimates, Missing> {
         "left" => seen!(run, volume, ExponentialLeft::new(step)),
         "midpoint" => seen!(run, volume, Midpoint::new(step)),
         "mean-extinction" => seen!(run, volume, MeanExtinction::new(step)),
-        _ => seen!(run, volume, PreIntegrated::new(step)),
+        "pre-integrated" => seen!(run, volume, PreIntegrated::new(step)),
+        "adaptive" => seen!(run, volume, Adaptive::new(0.08 / (run.knob() * run.knob()) as f32)),
+        _ => seen!(run, volume, ExactCell::new()),
     }?;
-    let (_, samples, _) = RULES.iter().find(|rule| rule.0 == name).expect("a method of the case");
+    let Some((_, samples, _)) = RULES.iter().find(|rule| rule.0 == name) else { return Ok(found) };
     // Values that a ray through the middle takes.
     let steps = u64::from(CELLS * run.knob() / 2) * samples;
     Ok(Estimates { counted: Some(found.samples * steps), ..found })
 }
 
-/// What the camera sees by the exact cell, in parts of a ray so short that the error of
-/// its rule of four points, of the eighth power of their optical depths, is far below 1e-9.
-fn exact(run: &Run<'_>, volume: &View) -> Result<Estimates, Missing> {
+/// The red of what is seen, or what passes.
+#[raydsl::kernel]
+fn counting(#[host] has_passed: bool, light: VolumeLight) -> f32 {
+    if has_passed { light.transmittance() } else { light.radiance.x }
+}
+
+/// The parts of a ray of [`exact()`]: so short that the error of the exact cell's rule of four points, of
+/// the eighth power of their optical depths, is far below 1e-9.
+const PARTS: u32 = 256;
+
+/// What the camera sees, or what passes, by the exact cell.
+pub(crate) fn exact(run: &Run<'_>, volume: &View, has_passed: bool) -> Result<Estimates, Missing> {
     let exact = ExactCell::new().least(0.0);
+    // Optical depths are exact as they are.
+    let parts = if has_passed { 1 } else { PARTS };
     let kernel = kernel!(|ray: Ray| {
         let (enter, leave) = volume.grid().span(ray);
-        let length = (max(leave, enter) - enter) / 256.0;
+        let length = (max(leave, enter) - enter) / parts as f32;
         let mut light = VolumeLight::new();
-        for i in 0..256 {
+        for i in 0..parts {
             let (from, to) = (enter + i as f32 * length, enter + (i + 1) as f32 * length);
             light = volume.integrate(&exact, ray.with_range(from, to), light);
         }
-        light.rgba()
+        counting(host(has_passed), light)
     });
     run.with_samples(1).centers(&camera(), &kernel)
 }
 
-/// The cases, of pictures with `edge` pixels along each edge; their references are the exact cell
-/// in `f64`.
-pub(crate) fn cases(edge: u32) -> Vec<Case<'static>> {
+/// The volume of a name of [`FIELDS`].
+pub(crate) fn volume(name: &str) -> &'static View {
     let size = UVec3::splat(CELLS + 1);
     let spacing = Vec3::splat(2.0 / CELLS as f32);
     let config = GridConfig::new().spacing(spacing).origin(-Vec3::ONE);
     let grid = Grid::new(voxels(), size, config).expect("a small grid");
     let grid: &'static Grid<'static, f32> = Box::leak(Box::new(grid));
-    let of = |name: &'static str| {
-        let volume: &'static View = Box::leak(Box::new(Volume::new(grid, function(name))));
-        let method = Method::from("exact cell");
-        let run = Run::new(&method, Backend::F64, 1).sized(edge, edge);
-        let exact = exact(&run, volume).expect("no device is needed");
-        let case = Case::new(name, Reference::f64(exact.values, 1e-9), move |run: &Run<'_>| {
-            estimate(run, volume)
-        });
-        let case = case.knob("step").counted(|_| Work::NOTHING);
-        RULES
-            .iter()
-            .fold(case, |case, (name, _, order)| case.method(*name, Some(Order::near(*order, 0.2))))
-    };
-    FIELDS.map(of).into()
+    Box::leak(Box::new(Volume::new(grid, function(name))))
+}
+
+/// The case of a name of [`FIELDS`], of pictures with `edge` pixels along each edge; its reference is
+/// the exact cell in `f64`.
+pub(crate) fn case(name: &str, edge: u32) -> Case<'static> {
+    let volume = volume(name);
+    let method = Method::from("exact cell");
+    let run = Run::new(&method, Backend::F64, 1).sized(edge, edge);
+    let exact = exact(&run, volume, false).expect("no device is needed");
+    let case = Case::new(name, Reference::f64(exact.values, 1e-9), move |run: &Run<'_>| {
+        estimate(run, volume)
+    });
+    let case = case.knob("step").values(&[1, 2, 4, 8, 16, 32]).family("volumes");
+    let case = RULES.iter().fold(case.counted(|_| Work::NOTHING), |case, (name, _, order)| {
+        case.method(*name, Some(Order::near(*order, 0.2)))
+    });
+    OTHERS.iter().fold(case, |case, name| case.method(*name, None))
 }

@@ -13,7 +13,6 @@ pub mod lens;
 pub mod mesh;
 pub mod model;
 pub mod picture;
-pub mod raster;
 pub mod rasterizer;
 pub mod ropes;
 pub mod sheet;

@@ -69,6 +69,46 @@ fn rules_of_quadrature_have_their_orders() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
+/// Cases have values of their own; a family has a table, whose least number is 1 where one curve is the
+/// quickest of all.
+#[test]
+fn families_have_a_table_to_choose_by() -> Result<(), Box<dyn Error>> {
+    let slow = |name: &str, until: u32| {
+        Case::new(name, Reference::closed_form(1.0), move |run: &Run<'_>| {
+            let is_slow = run.method().name() == "slow";
+            std::thread::sleep(Duration::from_millis(if is_slow { 20 } else { 1 }));
+            let is_good = run.knob() >= until && run.method().name() != "bad";
+            Ok(Estimates::new(vec![if is_good { 1.0 + 1e-6 } else { 1.5 }], u64::from(run.knob())))
+        })
+        .values(&[1, 2, 3])
+        .family("sleepers")
+        .method("slow", None)
+        .method("swift", None)
+        .method("bad", None)
+    };
+    let cases = [slow("first", 2), slow("never", 9), slow("at-once", 1), quadrature("exp")];
+    let report = quick().run(&cases)?;
+    assert_eq!(report.families(), ["sleepers"]);
+    let knobs = |i: usize| report.cases[i].curves[0].points.iter().map(|p| p.knob);
+    assert!(knobs(0).eq(1..=3) && knobs(3).eq([16, 64, 256, 1024, 4096]));
+    let text = report.choice("sleepers");
+    assert!(text.starts_with("sleepers: first, never, at-once\n\nerror 1e-2; 1 is "), "{text}");
+    assert!(text.contains(" s, in 2 of 3 cases\n"), "{text}");
+    let row = |name: &str| {
+        let line = text.lines().find(|l| l.starts_with(name)).unwrap_or_default();
+        line[name.len()..].trim().trim_start_matches('<').to_owned()
+    };
+    assert_eq!((row("swift").as_str(), row("bad").as_str()), ("1.0", "-"), "{text}");
+    let ratio: f64 = row("slow").parse()?;
+    assert!((2.0..40.0).contains(&ratio), "{text}");
+    // Values that are asked for are those of all cases, and wrong ones of a case are refused.
+    let asked = quick().knobs(&[5]).run(&[slow("first", 2)])?;
+    assert_eq!(asked.cases[0].curves[0].points[0].knob, 5);
+    let wrong = quick().run(&[slow("first", 2).values(&[3, 3])]);
+    assert!(matches!(wrong, Err(WorkPrecisionError::Knob { value: 3 })), "{wrong:?}");
+    Ok(())
+}
+
 #[test]
 fn what_is_below_a_floor_is_not_fitted() -> Result<(), Box<dyn Error>> {
     let knobs: Vec<u32> = (2..14).map(|i| 1 << i).collect();
@@ -171,6 +211,8 @@ fn shapes_of_files() -> Result<(), Box<dyn Error>> {
     for plot in plots {
         let svg = std::fs::read_to_string(plot.with_extension("svg"))?;
         assert!(svg.starts_with("<svg ") && svg.ends_with("</svg>\n") && !svg.contains("<&>"));
+        #[cfg(feature = "gpu")]
+        assert_eq!(&std::fs::read(plot.with_extension("png"))?[1..4], b"PNG");
     }
     std::fs::remove_dir_all(&folder)?;
     let file = std::env::temp_dir().join(format!("raydsl-file-{}", std::process::id()));

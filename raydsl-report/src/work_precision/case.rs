@@ -115,6 +115,9 @@ impl Order {
     }
 }
 
+/// The knob's values of cases that set none.
+const VALUES: [u32; 5] = [16, 64, 256, 1024, 4096];
+
 pub(super) type Estimate<'a> = dyn Fn(&Run<'_>) -> Result<Estimates, Missing> + 'a;
 pub(super) type Count<'a> = dyn Fn(&Run<'_>) -> Work + 'a;
 
@@ -140,7 +143,9 @@ pub(super) type Count<'a> = dyn Fn(&Run<'_>) -> Work + 'a;
 /// ```
 pub struct Case<'a> {
     pub(super) name: String,
+    pub(super) family: String,
     pub(super) knob: String,
+    pub(super) values: Vec<u32>,
     pub(super) reference: Reference,
     pub(super) methods: Vec<(Method, Option<Order>)>,
     pub(super) estimate: Box<Estimate<'a>>,
@@ -170,7 +175,9 @@ impl<'a> Case<'a> {
     ) -> Self {
         Self {
             name: name.into(),
+            family: String::new(),
             knob: "spp".to_owned(),
+            values: VALUES.to_vec(),
             reference,
             methods: Vec::new(),
             estimate: Box::new(estimate),
@@ -183,6 +190,18 @@ impl<'a> Case<'a> {
     /// number of samples gives that number by [`Run::with_samples`].
     pub fn knob(self, name: impl Into<String>) -> Self {
         Self { knob: name.into(), ..self }
+    }
+
+    /// Sets the knob's values where [`WorkPrecision::knobs`](super::WorkPrecision::knobs) does not:
+    /// increasing, from 1 to [`MAX_KNOB`](super::MAX_KNOB); 16, 64, 256, 1024 and 4096 unless set.
+    pub fn values(self, values: &[u32]) -> Self {
+        Self { values: values.to_vec(), ..self }
+    }
+
+    /// Sets the name of the cases that it is compared with, which have the same methods: see
+    /// [`Report::choice`](super::Report::choice).
+    pub fn family(self, name: impl Into<String>) -> Self {
+        Self { family: name.into(), ..self }
     }
 
     /// Adds a method and its theoretical order, if there is one.

@@ -72,6 +72,10 @@ pub enum WorkPrecisionError {
         /// The number of the reference's values.
         expected: usize,
     },
+    /// A plot cannot be drawn.
+    #[cfg(feature = "png")]
+    #[error(transparent)]
+    Png(#[from] super::PngError),
     /// A file cannot be written.
     #[error("cannot write {}: {source}; choose another folder", path.display())]
     File {

@@ -4,10 +4,15 @@ use std::path::{Path, PathBuf};
 
 use super::{Report, WorkPrecisionError};
 
+/// Pixels for a unit of a plot, which is 1000 units wide.
+#[cfg(feature = "png")]
+const PNG_SCALE: f32 = 1.6;
+
 impl Report {
     /// Writes into `folder`: `points.csv`, `report.json`, `table.txt`, `errors.txt`,
-    /// `omissions.md`, and a plot for each case, `work_precision.svg` if there is one case and
-    /// `work_precision_NAME.svg` otherwise. Returns the paths of the plots without their extension,
+    /// `omissions.md`, `choice_NAME.txt` for each [family](Self::families), and a plot for each case,
+    /// `work_precision.svg` if there is one case and `work_precision_NAME.svg` otherwise; with the
+    /// feature `png` a `.png` besides each. Returns the paths of the plots without their extension,
     /// in the order of the cases.
     ///
     /// # Errors
@@ -28,13 +33,24 @@ impl Report {
         write(folder.join("table.txt"), self.table())?;
         write(folder.join("errors.txt"), self.errors())?;
         write(folder.join("omissions.md"), self.omissions())?;
+        for family in self.families() {
+            let path = folder.join(format!("choice_{}.txt", file_name(family)));
+            write(path, self.choice(family))?;
+        }
         let mut plots = Vec::new();
         for case in &self.cases {
             let stem = match self.cases.len() {
                 1 => "work_precision".to_owned(),
                 _ => format!("work_precision_{}", file_name(&case.name)),
             };
-            write(folder.join(format!("{stem}.svg")), case.plot().svg())?;
+            let plot = case.plot();
+            write(folder.join(format!("{stem}.svg")), plot.svg())?;
+            #[cfg(feature = "png")]
+            {
+                let path = folder.join(format!("{stem}.png"));
+                let file = plot.png(PNG_SCALE)?;
+                std::fs::write(&path, file).map_err(error(&path))?;
+            }
             plots.push(folder.join(stem));
         }
         Ok(plots)

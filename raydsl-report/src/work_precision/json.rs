@@ -47,6 +47,8 @@ fn number(v: f64) -> Value {
 fn case(case: &Measured) -> Value {
     json!({
         "case": case.name,
+        "family": case.family,
+        "family": case.family,
         "knob": case.knob,
         "reference_kind": case.kind.name(),
         "reference_uncertainty": case.uncertainty,

@@ -43,16 +43,18 @@ impl WorkPrecision<'_> {
             gpu,
         };
         let mut all = self.series(case);
+        let knobs = self.knobs_of(case).to_vec();
         (self.progress)(&format!("{}: warm-up", case.name));
         for series in &mut all {
-            runner.warm_up(&mut series.curve, self.knobs[0])?;
+            runner.warm_up(&mut series.curve, knobs[0])?;
         }
-        all.iter_mut().for_each(|s| s.curve.points = self.points());
+        let points = || knobs.iter().map(|k| Point::new(*k)).collect();
+        all.iter_mut().for_each(|s| s.curve.points = points());
         let ready = all.iter().filter(|s| s.curve.missing.is_none()).count();
         let share = self.time.as_secs_f64() / ready.max(1) as f64;
         for seed in 0..self.repetitions {
             (self.progress)(&format!("{}: {} of {}", case.name, seed + 1, self.repetitions));
-            for (i, knob) in self.knobs.iter().enumerate() {
+            for (i, knob) in knobs.iter().enumerate() {
                 for series in all.iter_mut().filter(|s| s.curve.missing.is_none()) {
                     if series.may_run(*knob, share) {
                         runner.add(series, i, seed)?;
@@ -68,6 +70,7 @@ impl WorkPrecision<'_> {
         let others = case.methods.iter().filter(|(m, _)| !self.is_chosen(m));
         Ok(Measured {
             name: case.name.clone(),
+            family: case.family.clone(),
             knob: case.knob.clone(),
             kind: case.reference.kind(),
             uncertainty: case.reference.uncertainty(),
@@ -76,10 +79,6 @@ impl WorkPrecision<'_> {
             curves,
             not_asked_for: others.map(|(m, _)| m.name.clone()).collect(),
         })
-    }
-
-    fn points(&self) -> Vec<Point> {
-        self.knobs.iter().map(|k| Point::new(*k)).collect()
     }
 
     /// Returns a curve for each method and backend, without points.

@@ -31,6 +31,7 @@
 //! Differential Equations I" (1993), section II.10.
 
 mod case;
+mod choice;
 mod cpu_clock;
 mod csv;
 mod curve;
@@ -57,6 +58,8 @@ use std::time::Duration;
 
 pub use case::{Backend, Case, Method, Order};
 pub use curve::{Curve, Point, Repetition, Speedup, Status, Verdict};
+#[cfg(feature = "png")]
+pub use drawing::PngError;
 pub use drawing::{Anchor, Color, Drawing, Mark, Symbol};
 pub use efficiency::Efficiency;
 pub use environment::Environment;
@@ -73,7 +76,7 @@ use raydsl::kernel::Variant;
 
 /// The settings of a measurement.
 pub struct WorkPrecision<'a> {
-    knobs: Vec<u32>,
+    knobs: Option<Vec<u32>>,
     methods: Option<Vec<String>>,
     backends: Vec<Backend>,
     repetitions: u32,
@@ -94,12 +97,12 @@ impl Default for WorkPrecision<'_> {
 
 impl<'a> WorkPrecision<'a> {
     /// Creates settings for all methods on the scalar variant, packets of 8 and 16 and WGSL, with
-    /// 16, 64, 256, 1024 and 4096 for the knob, 5 repetitions, 16 by 16 pixels and at most 30
-    /// seconds for each case.
+    /// each case's own values of the knob, 5 repetitions, 16 by 16 pixels and at most 30 seconds for
+    /// each case.
     pub fn new() -> Self {
         let variants = [Variant::Scalar, Variant::Packet8, Variant::Packet16, Variant::Wgsl];
         Self {
-            knobs: vec![16, 64, 256, 1024, 4096],
+            knobs: None,
             methods: None,
             backends: variants.map(Backend::Variant).to_vec(),
             repetitions: 5,
@@ -113,9 +116,15 @@ impl<'a> WorkPrecision<'a> {
         }
     }
 
-    /// Sets the knob's values: increasing, from 1 to [`MAX_KNOB`].
+    /// Sets the knob's values for all cases: increasing, from 1 to [`MAX_KNOB`]. Without it each
+    /// case has [its own](Case::values).
     pub fn knobs(self, knobs: &[u32]) -> Self {
-        Self { knobs: knobs.to_vec(), ..self }
+        Self { knobs: Some(knobs.to_vec()), ..self }
+    }
+
+    /// Returns the knob's values for a case.
+    fn knobs_of<'v>(&'v self, case: &'v Case<'_>) -> &'v [u32] {
+        self.knobs.as_ref().unwrap_or(&case.values)
     }
 
     /// Selects the methods of these names; a case's others are listed as omitted.
@@ -210,17 +219,8 @@ impl<'a> WorkPrecision<'a> {
         if cases.is_empty() {
             return nothing("case");
         }
-        if self.knobs.is_empty() {
-            return nothing("value of the knob");
-        }
         if self.backends.is_empty() {
             return nothing("backend");
-        }
-        let out_of_order = |(i, k): (usize, &u32)| i > 0 && *k <= self.knobs[i - 1];
-        let is_bad = |k: u32| !(1..=MAX_KNOB).contains(&k);
-        let mut knobs = self.knobs.iter().enumerate();
-        if let Some((_, value)) = knobs.find(|k| is_bad(*k.1) || out_of_order(*k)) {
-            return Err(WorkPrecisionError::Knob { value: *value });
         }
         let (width, height) = self.size;
         if !(1..=1u64 << 24).contains(&(u64::from(width) * u64::from(height))) {
@@ -231,6 +231,17 @@ impl<'a> WorkPrecision<'a> {
                 return Err(WorkPrecisionError::Name { case: case.name.clone() });
             }
             case.reference.check(&case.name)?;
+            let knobs = self.knobs_of(case);
+            if knobs.is_empty() {
+                return nothing("value of the knob");
+            }
+            let out_of_order = |(i, k): (usize, &u32)| i > 0 && *k <= knobs[i - 1];
+            let is_bad = |k: u32| !(1..=MAX_KNOB).contains(&k);
+            if let Some((_, value)) =
+                knobs.iter().enumerate().find(|k| is_bad(*k.1) || out_of_order(*k))
+            {
+                return Err(WorkPrecisionError::Knob { value: *value });
+            }
             if !case.methods.iter().any(|(m, _)| self.is_chosen(m)) {
                 return nothing("method of a case");
             }
@@ -271,6 +282,8 @@ pub struct Omitted {
 pub struct Measured {
     /// Its name.
     pub name: String,
+    /// The name of the cases that it is compared with; may be empty.
+    pub family: String,
     /// The knob's name.
     pub knob: String,
     /// The kind of its reference.

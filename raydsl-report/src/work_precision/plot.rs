@@ -3,28 +3,39 @@
 use super::Measured;
 use super::case::{Backend, Order};
 use super::curve::{Curve, Point, Status};
-use super::drawing::{Anchor, Color, Drawing, Mark, Symbol};
+use super::drawing::{Anchor, Color, Drawing, FONT_SIZE, LETTER, Mark, Symbol};
 use raydsl::kernel::Variant;
 
 /// The colours of methods, chosen for colour-blind readers. (Okabe and Ito, "Color Universal
 /// Design", 2008.)
-const COLORS: [Color; 6] =
-    [[213, 94, 0], [0, 114, 178], [0, 158, 115], [204, 121, 167], [230, 159, 0], [86, 180, 233]];
+const COLORS: [Color; 7] = [
+    [213, 94, 0],
+    [0, 114, 178],
+    [0, 158, 115],
+    [204, 121, 167],
+    [230, 159, 0],
+    [86, 180, 233],
+    [0, 0, 0],
+];
 const INK: Color = [40, 40, 44];
 const GRID: Color = [226, 226, 230];
 const FLOOR: Color = [110, 110, 116];
 
-const WIDTH: u32 = 1180;
-const HEIGHT: u32 = 520;
+const WIDTH: u32 = 1000;
+const HEIGHT: u32 = 460;
 /// Both panels: their left edges, width, top and bottom.
-const LEFTS: [f64; 2] = [84.0, 576.0];
-const PANEL: f64 = 420.0;
-const TOP: f64 = 48.0;
-const BOTTOM: f64 = 456.0;
-const LEGEND: f64 = LEFTS[1] + PANEL + 24.0;
+const LEFTS: [f64; 2] = [84.0, 456.0];
+const PANEL: f64 = 310.0;
+const TOP: f64 = 56.0;
+const BOTTOM: f64 = 400.0;
+const LEGEND: f64 = LEFTS[1] + PANEL + 22.0;
+/// The height of a line of the legend.
+const LINE: f64 = 20.0;
+/// The most labels of an axis.
+const LABELS: i32 = 7;
+/// The most curves of a panel.
+const CURVES: usize = 12;
 
-/// The width and height of a letter.
-const LETTER: f64 = 8.0;
 /// The distance between a text and an axis.
 const MARGIN: f64 = 3.0;
 /// The radius of symbols.
@@ -53,20 +64,23 @@ impl Measured {
     /// over the time of a run, for each method (a colour) and backend (a symbol). Symbols are at
     /// the medians of the repetitions; bars span the 10 % to 90 % quantiles. At the right the same
     /// over the work, independent of the machine, with triangles of the theoretical orders. Points
-    /// at a floor are dotted. A floor two decades or more below all errors is noted above the
+    /// at a floor are dotted. Of more than twelve curves it has those of the first backend and of the
+    /// quickest, and the legend says so. A floor two decades or more below all errors is noted above the
     /// panels.
     ///
     /// The work is the first of these that was counted for every point: the kernels' own counts,
-    /// texture fetches, tests of nodes and primitives, rays; else samples.
+    /// texture fetches, tests of nodes and primitives, rays, samples; the knob if all points have the
+    /// same.
     pub fn plot(&self) -> Drawing {
         let mut plot = Plot { case: self, marks: Vec::new(), methods: methods(self) };
-        let shown = shown(self);
-        plot.text((LEFTS[0], 20.0), &self.name, Anchor::Start);
+        let (shown, others) = shown(self);
+        let title = format!("{}, reference: {}", self.name, self.kind.meaning());
+        plot.text((LEFTS[0], 18.0), &title, Anchor::Start);
         let (ys, floors, below) = plot.heights(&shown);
         if !below.is_empty() {
-            plot.colored((LEFTS[0], 36.0), &below, Anchor::Start, FLOOR);
+            plot.colored((LEFTS[0], 40.0), &below, Anchor::Start, FLOOR);
         }
-        let unit = unit(&firsts(&shown));
+        let unit = unit(&firsts(&shown), &self.knob);
         for (i, curves) in [&shown, &firsts(&shown)].into_iter().enumerate() {
             let x: fn(&Point) -> f64 = if i == 0 { Point::t_median } else { unit.of };
             let points = curves.iter().flat_map(|c| c.points.iter().filter(|p| ran(p)));
@@ -82,8 +96,9 @@ impl Measured {
             }
             curves.iter().for_each(|curve| plot.curve(&axes, curve, x, i == 0));
         }
-        plot.legend(&shown);
-        Drawing { width: WIDTH, height: HEIGHT, marks: plot.marks }
+        let bottom = plot.legend(&shown, others);
+        let height = HEIGHT.max(bottom.ceil() as u32);
+        Drawing { width: WIDTH, height, marks: plot.marks }
     }
 }
 
@@ -108,23 +123,31 @@ fn error(point: &Point) -> f64 {
 }
 
 /// The unit of the right panel's axis.
-struct Unit {
-    name: &'static str,
+struct Unit<'c> {
+    name: &'c str,
     /// Returns the work of one run of a point; 0 if unknown.
     of: fn(&Point) -> f64,
 }
 
-/// Returns the first unit known for every point, the most informative first.
-fn unit(curves: &[&Curve]) -> Unit {
+/// Returns the first unit that is known for every point and not the same for all, the most
+/// informative first.
+fn unit<'c>(curves: &[&Curve], knob: &'c str) -> Unit<'c> {
     let units = [
         Unit { name: "counted in all", of: |p| float(p.repetitions[0].counted) },
         Unit { name: "texture fetches in all", of: |p| float(p.work().texture_fetches) },
         Unit { name: "tests of nodes and primitives in all", of: |p| float(tests(p)) },
         Unit { name: "rays in all", of: |p| float(p.work().rays) },
+        Unit { name: "samples in all", of: |p| p.samples() as f64 },
     ];
     let points = || curves.iter().flat_map(|c| c.points.iter().filter(|p| ran(p)));
-    let known = units.into_iter().find(|unit| points().all(|p| (unit.of)(p) > 0.0));
-    known.unwrap_or(Unit { name: "samples in all", of: |p| p.samples() as f64 })
+    let numbers = |unit: &Unit<'_>| points().map(unit.of).collect::<Vec<f64>>();
+    let says_something = |unit: &Unit<'_>| {
+        let numbers = numbers(unit);
+        let differ = numbers.iter().any(|n| *n != numbers[0]) || numbers.len() < 2;
+        differ && numbers.iter().all(|n| *n > 0.0)
+    };
+    let of_knob = Unit { name: knob, of: |p| f64::from(p.knob) };
+    units.into_iter().find(says_something).unwrap_or(of_knob)
 }
 
 fn float(count: Option<u64>) -> f64 {
@@ -136,8 +159,27 @@ fn tests(point: &Point) -> Option<u64> {
     work.nodes.zip(work.primitives).map(|(nodes, primitives)| nodes + primitives)
 }
 
-fn shown(case: &Measured) -> Vec<&Curve> {
-    case.curves.iter().filter(|c| c.points.iter().any(ran)).collect()
+/// Returns the curves of the plot, and the number of others.
+fn shown(case: &Measured) -> (Vec<&Curve>, usize) {
+    let all: Vec<&Curve> = case.curves.iter().filter(|c| c.points.iter().any(ran)).collect();
+    if all.len() <= CURVES {
+        return (all, 0);
+    }
+    let quickest = quickest(&all);
+    let is_kept = |c: &Curve| c.backend == all[0].backend || Some(c.backend) == quickest;
+    let kept: Vec<&Curve> = all.iter().copied().filter(|c| is_kept(c)).collect();
+    let others = all.len() - kept.len();
+    (kept, others)
+}
+
+/// Returns the backend with the greatest speed-up over the first, on average over methods.
+fn quickest(curves: &[&Curve]) -> Option<Backend> {
+    let mean = |backend: Backend| {
+        let of_it = curves.iter().filter(|c| c.backend == backend);
+        let logs: Vec<f64> = of_it.filter_map(|c| c.speedup).map(|s| s.ratio.ln()).collect();
+        if logs.is_empty() { 0.0 } else { logs.iter().sum::<f64>() / logs.len() as f64 }
+    };
+    curves.iter().map(|c| c.backend).max_by(|a, b| mean(*a).total_cmp(&mean(*b)))
 }
 
 /// Returns the first backend of each method: the others take the same samples.
@@ -156,6 +198,12 @@ fn decades(values: impl Iterator<Item = f64>) -> (i32, i32) {
     }
     let (low, high) = (low.floor() as i32, high.ceil() as i32);
     (low, high.max(low + 1))
+}
+
+/// Returns whether the label of a power of ten is written: of many powers, every second or third.
+fn is_labelled(exponent: i32, (low, high): (i32, i32)) -> bool {
+    let every = (high - low) / LABELS + 1;
+    (exponent - low) % every == 0
 }
 
 struct Axes {
@@ -190,7 +238,7 @@ impl Axes {
                 Anchor::End => x - length,
             };
             let (least, most) = (self.left + MARGIN, self.left + PANEL - MARGIN - length);
-            let half = 0.5 * LETTER;
+            let half = 0.5 * FONT_SIZE;
             let height = y.clamp(TOP + half, BOTTOM - MARGIN - half);
             (left.clamp(least, most) - left, height - y)
         };
@@ -255,12 +303,16 @@ impl Plot<'_> {
         for e in axes.xs.0..=axes.xs.1 {
             let x = 10f64.powi(e);
             self.line(&[axes.place(x, y0), axes.place(x, y1)], GRID, 1.0, None);
-            self.text((axes.place(x, y0).0, BOTTOM + 16.0), &format!("1e{e}"), Anchor::Middle);
+            if is_labelled(e, axes.xs) {
+                self.text((axes.place(x, y0).0, BOTTOM + 16.0), &format!("1e{e}"), Anchor::Middle);
+            }
         }
         for e in axes.ys.0..=axes.ys.1 {
             let y = 10f64.powi(e);
             self.line(&[axes.place(x0, y), axes.place(x1, y)], GRID, 1.0, None);
-            self.text((axes.left - 8.0, axes.place(x0, y).1), &format!("1e{e}"), Anchor::End);
+            if is_labelled(e, axes.ys) {
+                self.text((axes.left - 8.0, axes.place(x0, y).1), &format!("1e{e}"), Anchor::End);
+            }
         }
         let corners = [(x0, y1), (x0, y0), (x1, y0)].map(|(x, y)| axes.place(x, y));
         self.line(&corners, INK, 1.25, None);
@@ -282,7 +334,7 @@ impl Plot<'_> {
         let (x0, x1) = (10f64.powi(axes.xs.0), 10f64.powi(axes.xs.1));
         let ends = [axes.place(x0, floor), axes.place(x1, floor)];
         self.line(&ends, FLOOR, 1.25, Some(2.0));
-        let at = (ends[1].0 - 4.0, ends[1].1 - 9.0);
+        let at = (ends[1].0 - 4.0, ends[1].1 - 0.6 * FONT_SIZE);
         self.colored(at, name, Anchor::End, FLOOR);
     }
 
@@ -358,7 +410,7 @@ impl Plot<'_> {
         // Beside the vertical leg, or if that is too near to an axis, along the horizontal one.
         let ((upright, level), middle) = (corners[2], mean(corners[0], corners[1]));
         let (aside, anchor) = if is_above { (4.0, Anchor::Start) } else { (-4.0, Anchor::End) };
-        let beyond = if is_above { -9.0 } else { 9.0 };
+        let beyond = if is_above { -0.6 } else { 0.6 } * FONT_SIZE;
         let places =
             [((upright + aside, middle.1), anchor), ((middle.0, level + beyond), Anchor::Middle)];
         let (at, anchor) = axes.first_inside(places, &text);
@@ -366,18 +418,20 @@ impl Plot<'_> {
     }
 
     /// Draws the legend: the colour of each method, with its order, and the symbol of each backend.
-    fn legend(&mut self, curves: &[&Curve]) {
-        let mut y = TOP + 8.0;
+    /// Returns where it ends.
+    fn legend(&mut self, curves: &[&Curve], others: usize) -> f64 {
+        let mut y = TOP + 0.5 * FONT_SIZE;
         for curve in firsts(curves) {
             let color = self.color(curve);
             self.line(&[(LEGEND, y), (LEGEND + 20.0, y)], color, 2.5, None);
             let name: String = curve.method.name.chars().take(16).collect();
             self.text((LEGEND + 28.0, y), &name, Anchor::Start);
             let order = curve.fit.map_or_else(String::new, |f| {
-                format!("{:.2} +- {:.2}", f.order, 0.5 * (f.high - f.low))
+                // Not `-0`.
+                format!("order {:.2} ± {:.2}", round(f.order), 0.5 * (f.high - f.low))
             });
-            self.text((LEGEND + 28.0, y + 16.0), &order, Anchor::Start);
-            y += 40.0;
+            self.text((LEGEND + 28.0, y + LINE), &order, Anchor::Start);
+            y += 2.0 * LINE + 4.0;
         }
         let mut backends: Vec<Backend> = Vec::new();
         for curve in curves {
@@ -389,11 +443,20 @@ impl Plot<'_> {
             let at = (LEGEND + 10.0, y);
             self.marks.push(Mark::Symbol { at, symbol: symbol(backend), color: INK, radius: 5.0 });
             self.text((LEGEND + 28.0, y), backend.name(), Anchor::Start);
-            y += 20.0;
+            y += LINE;
         }
-        let title = format!("reference {}", self.case.kind.name());
-        self.text((LEGEND, y + 12.0), &title, Anchor::Start);
+        if others > 0 {
+            self.text((LEGEND, y + 4.0), &format!("{others} curves more in"), Anchor::Start);
+            self.text((LEGEND, y + 4.0 + LINE), "the table", Anchor::Start);
+            y += 2.0 * LINE + 4.0;
+        }
+        y
     }
+}
+
+/// Returns a number with two digits behind the point, 0 without a sign.
+fn round(number: f64) -> f64 {
+    (100.0 * number).round() / 100.0 + 0.0
 }
 
 /// Returns the order of a triangle: the middle of a range, or its end.
@@ -414,11 +477,12 @@ mod tests {
         let axes = Axes { left: 100.0, xs: (0, 1), ys: (0, 1) };
         let (beside, below) = (((300.0, 200.0), Anchor::End), ((320.0, 250.0), Anchor::Middle));
         assert_eq!(axes.first_inside([beside, below], "-0.50"), beside);
-        // Its left end would be at 92.
-        let near = ((132.0, 200.0), Anchor::End);
+        // Its left end would be at 95.
+        let near = ((140.0, 200.0), Anchor::End);
         assert_eq!(axes.first_inside([near, below], "-0.50"), below);
         let corner = ((110.0, BOTTOM), Anchor::Middle);
-        let moved = ((100.0 + MARGIN + 20.0, BOTTOM - MARGIN - 4.0), Anchor::Middle);
+        let moved = (100.0 + MARGIN + 2.5 * LETTER, BOTTOM - MARGIN - 0.5 * FONT_SIZE);
+        let moved = (moved, Anchor::Middle);
         assert_eq!(axes.first_inside([near, corner], "-0.50"), moved);
     }
 

@@ -54,6 +54,11 @@ impl Reference {
         Self::new(ReferenceKind::ClosedForm, vec![value], 0.0)
     }
 
+    /// Creates a reference from a closed form for each pixel, without an error.
+    pub fn closed_forms(values: impl Into<Vec<f64>>) -> Self {
+        Self::new(ReferenceKind::ClosedForm, values.into(), 0.0)
+    }
+
     /// Creates a reference from a quadrature, one value or one for each pixel, and a bound on their
     /// error.
     pub fn quadrature(values: impl Into<Vec<f64>>, uncertainty: f64) -> Self {

@@ -124,6 +124,12 @@ impl<'a> Run<'a> {
         self.seed
     }
 
+    /// Returns the device for [`Variant::Wgsl`], for cases that run it themselves.
+    #[cfg(feature = "gpu")]
+    pub fn device(&self) -> Option<&'a raydsl::gpu::GpuScheduler> {
+        self.gpu
+    }
+
     /// Returns the film's size.
     pub fn size(&self) -> (u32, u32) {
         self.size
