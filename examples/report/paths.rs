@@ -165,7 +165,7 @@ pub(crate) fn case(name: &str, samples: u32) -> Result<Case<'static>, Box<dyn Er
     // Of many dimensions, edges in most of them: theory knows the order of random samples alone.
     Ok(Case::new(name, reference, move |run| view.estimate(run))
         .built_in(build)
-        .values(&[16, 64, 256, 1024])
+        .values(&[1, 4, 16, 64, 256, 1024])
         .family("paths")
         .method(SampleMethod::Random, Some(Order::RANDOM))
         .method(SampleMethod::Stratified, None)

@@ -53,8 +53,8 @@ fn estimate(run: &Run<'_>, volume: &View) -> Result<Estimates, Missing> {
 }
 
 /// The case of a name and its volume, of pictures with `edge` pixels along each edge; its reference is
-/// the exact cell in `f64`. Samples do not know of each other, and the jackknife's bias is below their
-/// noise.
+/// the exact cell in `f64`. Samples do not know of each other; the jackknife has a small bias
+/// besides.
 pub(crate) fn case((name, volume): (&str, &str), edge: u32) -> Case<'static> {
     let volume = volumes::volume(volume);
     let method = Method::from("exact cell");

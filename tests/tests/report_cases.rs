@@ -74,15 +74,27 @@ fn filters_have_the_orders_of_theory() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
+/// Delta and ratio tracking have no bias, the jackknife a small one. Where extinction has a peak, few
+/// samples have most of its error, so that orders are known by their intervals only.
 #[test]
-fn estimates_of_transmittance_have_no_bias() -> Result<(), Box<dyn Error>> {
-    let orders = ["delta", "ratio", "jackknife"].map(|name| (name, -0.5));
+fn estimates_of_transmittance_fall_as_random_ones() -> Result<(), Box<dyn Error>> {
+    let edge = 8;
     for names in transmittance::NAMES {
-        let report = measured(&[transmittance::case(names, EDGE)], &[16, 64, 256])?;
-        assert_orders(&report, &orders, 0.1);
+        let settings = WorkPrecision::new().backends(&[widest()]).knobs(&[4, 16, 64, 256]);
+        let settings = settings.size(edge, edge).repetitions(2).time(Duration::from_secs(3600));
+        let report = settings.run(&[transmittance::case(names, edge)])?;
+        println!("{}", report.table());
         for curve in &report.cases[0].curves {
-            let z = curve.points[2].bias_z();
-            assert!(z.abs() < 5.0, "{} {}: {z}", names.0, curve.method.name());
+            let what = format!("{} {}: {:?}", names.0, curve.method.name(), curve.fit);
+            let fit = curve.fit.expect("four points above the floor");
+            assert!(fit.low - 0.1 < -0.5 && -0.5 < fit.high + 0.1, "{what}");
+            let last = &curve.points[3];
+            let is_biased = curve.method.name() == "jackknife";
+            let bias = last.repetitions[0].metrics.bias.abs();
+            assert!(
+                if is_biased { bias < 5e-3 } else { last.bias_z().abs() < 5.0 },
+                "{what} {bias}"
+            );
         }
     }
     Ok(())
@@ -122,10 +134,10 @@ fn fast_arithmetic_is_good_enough_for_sampling() -> Result<(), Box<dyn Error>> {
 #[test]
 fn strategies_agree() -> Result<(), Box<dyn Error>> {
     for (name, ..) in strategies::SCENES {
-        let case = strategies::case(name, 4096)?;
+        let case = strategies::case(name, 1024)?;
         let error = |method: &str| {
             let method = Method::from(method);
-            let run = Run::new(&method, widest(), 1024).sized(EDGE, EDGE).seeded(3);
+            let run = Run::new(&method, widest(), 256).sized(EDGE, EDGE).seeded(3);
             let found = case.estimate(&run).map_err(|missing| missing.to_string())?;
             Ok::<Metrics, String>(Metrics::of(&found.values, case.reference()))
         };
