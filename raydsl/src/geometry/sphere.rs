@@ -28,7 +28,8 @@ pub const MAX_CROSSINGS: u32 = 2;
 ///
 /// The discriminant is computed from the part of the offset perpendicular to the ray, as in Haines,
 /// Günther and Akenine-Möller, "Precision Improvements for Ray/Sphere Intersection", Ray Tracing
-/// Gems (2019), chapter 7. A sphere of radius 0 is never hit.
+/// Gems (2019), chapter 7. A sphere of radius 0 is never hit. Radii and lengths of directions are from
+/// 1e-18 to 1e18: the squares of others are not in the range of `f32`, and such rays miss.
 #[kernel]
 #[inline]
 pub fn intersect(ray: Ray, center: Vec3, radius: f32) -> Hit {
@@ -53,7 +54,7 @@ pub fn intersect(ray: Ray, center: Vec3, radius: f32) -> Hit {
 ///
 /// It is computed from the offset to the centre, not from the point at `hit.t`, whose error is that
 /// of the distance: for a small sphere far away, larger than the sphere. Its error is at most 8 eps
-/// times the radius over the distance (eps = 2^-24).
+/// times the distance over the radius (eps = 2^-24).
 #[kernel]
 #[inline]
 pub fn normal(ray: Ray, hit: Hit, center: Vec3, radius: f32) -> Vec3 {

@@ -163,14 +163,30 @@ impl Context {
     ///
     /// NaNs are excepted, whose bits differ, and so are denormals where a device cannot be asked to
     /// keep them: it takes them for 0. It is so where the device takes SPIR-V, and where quotients and square roots are rounded to
-    /// nearest, or can be corrected so that they are: a kernel of 65,536 of them is run to find
-    /// out, once for a context, unless the device is a CPU.
+    /// nearest, or can be corrected so that they are: a kernel of 65,536 of them, and of sums, is run
+    /// to find out, once for a context, unless the device is a CPU.
     pub fn is_exact(&self) -> bool {
+        self.obstacle().is_none()
+    }
+
+    /// Returns the context if kernels are [exact](Self::is_exact) on its device: for a program that
+    /// would rather have no device than other bits.
+    ///
+    /// # Errors
+    ///
+    /// If they are not; the error says why.
+    pub fn require_exact(self) -> Result<Self, GpuError> {
+        match self.obstacle() {
+            None => Ok(self),
+            Some(reason) => Err(GpuError::NotExact { adapter: self.adapter_name(), reason }),
+        }
+    }
+
+    fn obstacle(&self) -> Option<&'static str> {
         #[cfg(not(target_family = "wasm"))]
-        return self.exactness().is_exact;
-        // A browser takes no SPIR-V.
+        return self.exactness().obstacle;
         #[cfg(target_family = "wasm")]
-        false
+        Some("a browser takes no SPIR-V, so its driver may fuse and move operations")
     }
 
     fn quotients(&self) -> Quotients {

@@ -32,6 +32,18 @@ pub enum GpuError {
         /// wgpu's explanation.
         reason: String,
     },
+    /// The device does not give kernels the bits of the other variants.
+    #[error(
+        "kernels on {adapter} do not have the bits of the other variants: {reason}; ask for \
+         Arithmetic::Fast or the bounds of WGSL instead, or use a Vulkan driver that takes SPIR-V and \
+         keeps the order of operations"
+    )]
+    NotExact {
+        /// The adapter's name.
+        adapter: String,
+        /// What it does otherwise.
+        reason: &'static str,
+    },
     /// The WGSL does not parse or does not validate.
     #[error("the WGSL is invalid at line {line}, `{text}`: {message}")]
     ShaderInvalid {

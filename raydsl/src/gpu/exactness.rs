@@ -1,4 +1,5 @@
-//! How a device rounds quotients and square roots, found by running some.
+//! How a device rounds quotients and square roots, and whether it leaves sums as they are written, found
+//! by running some.
 
 use std::collections::HashSet;
 
@@ -9,8 +10,12 @@ use crate::machine::wgsl::{Arithmetic, Module, Quotients};
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Exactness {
     pub(super) quotients: Quotients,
-    pub(super) is_exact: bool,
+    /// What it is that has other bits; `None` on an exact device.
+    pub(super) obstacle: Option<&'static str>,
 }
+
+/// Why a device without SPIR-V is not exact.
+const NO_SPIRV: &str = "it takes no SPIR-V, so its driver may fuse and move operations";
 
 /// The functions that correct a quotient and a root.
 const QUOTIENT: &str = include_str!("../machine/record/exact_quotient.wgsl");
@@ -22,25 +27,29 @@ const COUNT: u32 = 1 << 16;
 impl Exactness {
     /// Runs quotients and roots of a context's device and compares them with the host's.
     pub(super) fn of(context: &Context) -> Self {
-        let native = |is_exact| Self { quotients: Quotients::Native, is_exact };
+        let native = |obstacle| Self { quotients: Quotients::Native, obstacle };
         if context.spirv.is_none() {
-            return native(false);
+            return native(Some(NO_SPIRV));
         }
         // A device that is a CPU has its instructions, which are those of the host, and no `fma`
         // that could be relied on.
         if context.adapter_info().device_type == wgpu::DeviceType::Cpu {
-            return native(true);
+            return native(None);
         }
         let found = differences(context, &module(QUOTIENT, ROOT));
         context.forget_pipelines();
         // A kernel that fails will fail again, and then the error is returned.
         let Ok(found) = found else {
-            return native(false);
+            return native(Some("a kernel that tests its arithmetic failed"));
         };
-        match (found.contains(&Way::Native), found.contains(&Way::Corrected)) {
-            (false, _) => native(true),
-            (true, false) => Self { quotients: Quotients::Corrected, is_exact: true },
-            (true, true) => native(false),
+        let has = |way| found.contains(&way);
+        if has(Way::Sums) {
+            return native(Some("it fuses or moves sums and products of SPIR-V, too"));
+        }
+        match (has(Way::Native), has(Way::Corrected)) {
+            (false, _) => native(None),
+            (true, false) => Self { quotients: Quotients::Corrected, obstacle: None },
+            (true, true) => native(Some("its quotients or square roots cannot be corrected")),
         }
     }
 }
@@ -49,22 +58,30 @@ impl Exactness {
 enum Way {
     Native,
     Corrected,
+    /// Sums of products, and differences of sums.
+    Sums,
 }
 
 /// Returns the ways in which some result differs from the host's; nothing if the kernel fails.
 fn differences(context: &Context, module: &Module) -> Result<HashSet<Way>, GpuError> {
     let pairs: Vec<[f32; 2]> = (0..COUNT).map(pair).collect();
     let inputs: Vec<u8> = pairs.iter().flatten().flat_map(|x| x.to_le_bytes()).collect();
-    let mut outputs = vec![0; 16 * COUNT as usize];
+    let mut outputs = vec![0; 32 * COUNT as usize];
     context.run(module, &|_| None, &inputs, [COUNT, 1], &mut outputs)?;
     let mut found = HashSet::new();
-    for ([a, b], of_pair) in pairs.into_iter().zip(outputs.chunks_exact(16)) {
+    for ([a, b], of_pair) in pairs.into_iter().zip(outputs.chunks_exact(32)) {
+        let (quotients, sums) = of_pair.split_at(16);
         let expected = [a / b, a.sqrt()].map(f32::to_le_bytes);
-        for (way, results) in [Way::Native, Way::Corrected].into_iter().zip(of_pair.chunks_exact(8))
+        for (way, results) in
+            [Way::Native, Way::Corrected].into_iter().zip(quotients.chunks_exact(8))
         {
             if results != expected.as_flattened() {
                 found.insert(way);
             }
+        }
+        let expected = [a * b + b, a * b - b * b, (a + b) - a, (a - b) * b].map(f32::to_le_bytes);
+        if sums != expected.as_flattened() {
+            found.insert(Way::Sums);
         }
     }
     Ok(found)
@@ -91,7 +108,7 @@ fn pair(i: u32) -> [f32; 2] {
     })
 }
 
-/// Returns the kernel: native quotient and root, then both corrected by these functions.
+/// Returns the kernel: native quotient and root, both corrected by these functions, and sums.
 fn module(quotient: &str, root: &str) -> Module {
     let source = format!(
         "struct Job {{
@@ -104,7 +121,11 @@ fn module(quotient: &str, root: &str) -> Module {
 @group(0) @binding(0) var<uniform> params: vec4<u32>;
 @group(0) @binding(1) var<uniform> job: Job;
 @group(0) @binding(2) var<storage, read> inputs: array<vec2<f32>>;
-@group(0) @binding(3) var<storage, read_write> outputs: array<vec4<f32>>;
+struct Results {{
+    quotients: vec4<f32>,
+    sums: vec4<f32>,
+}}
+@group(0) @binding(3) var<storage, read_write> outputs: array<Results>;
 
 {quotient}
 {root}
@@ -115,7 +136,8 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {{
     let index = at.y * job.size.x + at.x - job.base;
     let a = inputs[index].x;
     let b = inputs[index].y;
-    outputs[index] = vec4<f32>(a / b, sqrt(a), exact_quotient(a, b), exact_root(a));
+    outputs[index].quotients = vec4<f32>(a / b, sqrt(a), exact_quotient(a, b), exact_root(a));
+    outputs[index].sums = vec4<f32>(a * b + b, a * b - b * b, (a + b) - a, (a - b) * b);
 }}
 "
     );
@@ -125,7 +147,7 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {{
         workgroup: [64, 1],
         uniforms: vec![0; 16],
         input_stride: 8,
-        output_stride: 16,
+        output_stride: 32,
         buffers: Vec::new(),
         textures: Vec::new(),
     }
@@ -193,15 +215,27 @@ fn fused(a: f32, b: f32, c: f32) -> f32 {
         assert!(found.contains(&Way::Corrected));
     }
 
-    /// A device that is a CPU is believed to round to nearest.
+    /// A device that is a CPU is believed to round to nearest, and to leave sums as they are written.
     #[test]
     fn what_is_native_is_exact_on_a_cpu() {
         let Some(context) = crate::gpu::tests::context() else {
             return;
         };
-        if context.adapter_info().device_type == wgpu::DeviceType::Cpu {
+        let is_cpu = context.adapter_info().device_type == wgpu::DeviceType::Cpu;
+        if is_cpu && context.spirv.is_some() {
             let found = differences(&context, &module(QUOTIENT, ROOT)).expect("the kernel runs");
-            assert!(!found.contains(&Way::Native));
+            assert!(!found.contains(&Way::Native) && !found.contains(&Way::Sums));
         }
+    }
+
+    /// WGSL alone lets a driver take `(a + b) - a` for `b`; where it does, that is found.
+    #[test]
+    fn a_device_without_spirv_is_refused() {
+        let Some(context) = crate::gpu::tests::context() else {
+            return;
+        };
+        let error = context.with_operations_fused().require_exact().expect_err("no SPIR-V");
+        let text = error.to_string();
+        assert!(text.contains("SPIR-V") && text.contains("Arithmetic::Fast"), "{text}");
     }
 }

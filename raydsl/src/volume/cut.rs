@@ -21,7 +21,8 @@ use crate::{Type, kernel};
 /// Every crossing counts once, whatever edge or vertex the ray passes through, and one that only
 /// touches an object changes nothing; the ends of parts are the distances of hits. The ray may
 /// begin inside. A plane is the surface of all that is behind it, for rays that cross it somewhere,
-/// also before they begin.
+/// also before they begin; of several planes one may be entered only where none is left: crossings do
+/// not tell that a line is inside of one plane or another everywhere.
 ///
 /// ```
 /// use raydsl::prelude::*;
