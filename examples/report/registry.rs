@@ -61,14 +61,14 @@ pub(crate) fn entries() -> Vec<Entry> {
     let mut all: Vec<Entry> = ready("edges", visibility::cases()).collect();
     all.extend(ready("smooth", light::cases()));
     all.extend(ready("smooth", textured::cases()));
-    all.push(later("openness", "cloud", "spp", || Ok(cloud::case(CLOUD_SAMPLES)?)));
+    all.push(later("openness", "cloud", "spp", || cloud::case(CLOUD_SAMPLES)));
     let scene = || open::case("scene", files::scene()?, FILE_SAMPLES);
     all.push(later("openness", "scene", "spp", scene));
     let scan = || open::case("scan", files::scan()?, FILE_SAMPLES);
     all.push(later("openness", "scan", "spp", scan));
     all.extend(
         paths::NAMES
-            .map(|name| later("paths", name, "spp", move || Ok(paths::case(name, PATH_SAMPLES)?))),
+            .map(|name| later("paths", name, "spp", move || paths::case(name, PATH_SAMPLES))),
     );
     all.extend(strategies::SCENES.map(|(name, ..)| {
         later("strategies", name, "spp", move || Ok(strategies::case(name, LAMP_SAMPLES)?))
