@@ -102,7 +102,7 @@ fn measure_group(
             .map_err(|error| format!("{}: {error}", row.path(group)))?;
         println!("{}", table::line(&row, &outcome));
         for example in row.examples(&outcome) {
-            println!("      {example}");
+            println!("{}", table::note(example));
         }
         if start.elapsed().as_secs() > 10 {
             eprintln!("{}: {:.0} s", row.path(group), start.elapsed().as_secs_f64());

@@ -15,7 +15,7 @@ pub(crate) fn head(group: &Group) -> String {
     }
     let _ = writeln!(
         text,
-        "  {:<36}{:>6} {:<6}{:>8}{:>8}{:>8}{:>9} {:>8}  ",
+        "  {:<35}{:>6} {:<6}{:>8}{:>8}{:>8}{:>9} {:>9}  ",
         "row", "count", "unit", "CPU", "WGSL", "f64", "textbook", "bound",
     );
     text
@@ -47,7 +47,7 @@ fn wrapped(text: &str, width: usize) -> String {
 pub(crate) fn line(row: &Row, outcome: &Outcome) -> String {
     let [cpu, wgsl, f64] = cells(outcome);
     format!(
-        "  {:<36}{:>6} {:<6}{:>8}{:>8}{:>8}{:>9} {:>8}  {}",
+        "  {:<35}{:>6} {:<6}{:>8}{:>8}{:>8}{:>9} {:>9}  {}",
         row.name,
         short_count(most(outcome)),
         row.unit.name(),
@@ -58,6 +58,11 @@ pub(crate) fn line(row: &Row, outcome: &Outcome) -> String {
         bound(row),
         verdict(row, outcome),
     )
+}
+
+/// Why a bound is missed, or the inputs of what broke it, below its row.
+pub(crate) fn note(text: &str) -> String {
+    format!("     {}", wrapped(text, WIDTH - 5))
 }
 
 /// All tables in Markdown, with an anchor for each group.
@@ -157,7 +162,7 @@ fn figure(worst: f64) -> String {
     if worst == 0.0 {
         "0".to_owned()
     } else if worst.is_infinite() {
-        "infinite".to_owned()
+        "inf".to_owned()
     } else if (0.01..1000.0).contains(&worst) {
         let text = format!("{worst:.*}", if worst < 1.0 { 3 } else { 1 });
         text.trim_end_matches('0').trim_end_matches('.').to_owned()

@@ -322,6 +322,11 @@ fn reciprocity(model: Model) -> Row {
             "As documented: light that is scattered several times is added by a factor of the viewer's \
              direction alone (Turquin 2019).",
         ),
+        "Dielectric" => row.misses(
+            Bound::all(1e-3),
+            "The half vector of refracted light is a difference: where the two directions are nearly \
+             in line it loses digits, and with it the distribution.",
+        ),
         _ => row,
     }
 }
