@@ -10,6 +10,7 @@ use raydsl::bsdf::{
 use raydsl::prelude::*;
 use raydsl::sampling::{ONE_MINUS_EPSILON, pcg4d, scrambled_sobol_1d, scrambled_sobol_2d};
 use raydsl::{Type, kernel};
+use raydsl_tests::hard_rays::EPS;
 use raydsl_tests::rng::Rng;
 
 use super::largest;
@@ -106,8 +107,8 @@ fn cosine(rng: &mut Rng) -> f32 {
     log.exp().max(least) as f32
 }
 
-/// The textbook is 1 less what is reflected. Where little is beyond the critical angle the cosine's
-/// own rounding counts, and nothing is promised.
+/// The textbook is 1 less what is reflected. Next to the critical angle, where the rounding of the
+/// cosine itself changes the share by a fifth of the bound, nothing is promised.
 fn transmitted(name: &'static str, draw: fn(&mut Rng) -> (f32, f32)) -> Row {
     Row::new(name, 2, Unit::Relative, Bound::all(1e-4), move |run| {
         let make = |rng: &mut Rng| {
@@ -119,7 +120,8 @@ fn transmitted(name: &'static str, draw: fn(&mut Rng) -> (f32, f32)) -> Row {
             let cos2 = 1.0 - (1.0 - c * c) / (eta * eta);
             let t = cos2.max(0.0).sqrt();
             let (s, p) = ((c - eta * t) / (c + eta * t), (eta * c - t) / (eta * c + t));
-            (cos2.abs() > 1e-3).then_some(if cos2 <= 0.0 {
+            let of_cosine = c * EPS / (eta * eta * cos2.abs());
+            (of_cosine < 2e-5).then_some(if cos2 <= 0.0 {
                 0.0
             } else {
                 1.0 - 0.5 * (s * s + p * p)
@@ -275,7 +277,7 @@ impl<A> Gathered<A, Scattered> for Furnace {
             let error = (squares / (n - 1.0) / n).sqrt();
             // Student's t of 7 degrees of freedom is above that once in 300,000 times.
             let excess = mean - 1.0 - 12.0 * error - 12.0 / samples;
-            if !(excess <= worst.0) {
+            if excess.is_nan() || excess > worst.0 {
                 let (alpha, wo) = cell_of(self.model, cell as u32 * SCRAMBLES);
                 worst = (excess, format!("alpha {alpha}, wo {wo}: {mean} +- {error:.1e}"));
             }

@@ -46,8 +46,15 @@ pub(crate) const ALL: &[Group] = &[
     odd::GROUP,
 ];
 
+/// Measures a row with a kernel, which is made where it is used.
+type Measure<'m, A, R> = dyn for<'k> Fn(&[Kernel<'k, A, R>]) -> Measured + 'm;
+
 /// What measuring gives.
 type Measured = Result<Outcome, Box<dyn Error>>;
+
+/// Why rows at the lowest scale are missed on some devices.
+const FLUSHED: &str = "On a device that takes denormals for 0: products of coordinates are denormal at this \
+                       scale.";
 
 /// 1 for a fault.
 fn fault(is_wrong: bool) -> Option<f64> {

@@ -7,7 +7,7 @@ use raydsl_tests::hard_rays::wide::{D3, dot, minus, plus, wide};
 use raydsl_tests::rng::Rng;
 use raydsl_tests::scenes::ColorSphere;
 
-use super::fault;
+use super::{FLUSHED, fault};
 use crate::row::{Bound, Group, Row, Unit};
 
 pub(crate) const GROUP: Group = Group {
@@ -36,11 +36,15 @@ fn rows() -> Vec<Row> {
     let mut all = Vec::new();
     all.extend(FAR.map(|far| decisions(format!("hit or not at {far:e} radii"), Spheres::at(far))));
     all.extend(SCALES.map(|radius| {
-        decisions(format!("hit or not, radius {radius:e}"), Spheres::of_radius(radius))
+        let row = decisions(format!("hit or not, radius {radius:e}"), Spheres::of_radius(radius));
+        let flushed = Bound { wgsl: 0.05, ..Bound::NONE };
+        if radius == SCALES[0] { row.misses(flushed, FLUSHED) } else { row }
     }));
     all.extend(FAR.map(|far| distances(format!("distance at {far:e} radii"), Spheres::at(far))));
     all.extend(SCALES.map(|radius| {
-        distances(format!("distance, radius {radius:e}"), Spheres::of_radius(radius))
+        let row = distances(format!("distance, radius {radius:e}"), Spheres::of_radius(radius));
+        let flushed = Bound { wgsl: f64::INFINITY, ..Bound::all(1.0) };
+        if radius == SCALES[0] { row.misses(flushed, FLUSHED) } else { row }
     }));
     all.extend(FAR.map(lengths));
     all.extend(FAR.map(normals));
@@ -240,7 +244,7 @@ fn lengths(far: f32) -> Row {
         )
     });
     row.misses(
-        Bound::all(2.6),
+        Bound::all(3.2),
         "A normal is the offset from the centre over its length: the sum of squares, the root and the \
          quotients are rounded.",
     )

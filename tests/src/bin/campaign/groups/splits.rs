@@ -245,7 +245,7 @@ fn of_sphere(rng: &mut Rng, center: Vec3, radius: f32, axis: usize, at: f32) -> 
 }
 
 fn pieces(shape: &'static Shape) -> Row {
-    Row::new(format!("parts of a {}", shape.name), 1, Unit::Faults, Bound::NONE, |run| {
+    let row = Row::new(format!("parts of a {}", shape.name), 1, Unit::Faults, Bound::NONE, |run| {
         Ok(run.on_host(|rng| {
             let size = 10f32.powi(rng.below(7) as i32 - 3);
             let offset = rng.point(1.0) * size * rng.pick(&[0.0, 1.0, 100.0, 1e5]);
@@ -263,7 +263,16 @@ fn pieces(shape: &'static Shape) -> Row {
                 format!("{size:?} at {offset:?}: {axis} = {at:?}: {parts:?}"),
             )
         }))
-    })
+    });
+    let row = row.share(0.1);
+    match shape.name {
+        "cylinder" | "cone" | "tube" => row.misses(
+            Bound::all(1e-5),
+            "Far from the world's origin, where a shape is some hundred ulp large, a part may leave out \
+             what is within an ulp of its box; traversals allow for more.",
+        ),
+        _ => row,
+    }
 }
 
 fn keeps_to_its_side((below, above): (Aabb, Aabb), whole: Aabb, axis: usize, at: f32) -> bool {

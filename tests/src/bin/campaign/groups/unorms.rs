@@ -121,7 +121,7 @@ fn nearest_code(x: f32, bits: u32) -> u32 {
     let mantissa = u128::from(x.to_bits() & 0x7f_ffff | u32::from(exponent > 0) << 23);
     let scale = 150 - exponent.max(1);
     // Smaller ones are far below half a code.
-    if scale > 120 { 0 } else { (((mantissa * codes << 1) + (1 << scale)) >> (scale + 1)) as u32 }
+    if scale > 120 { 0 } else { ((((mantissa * codes) << 1) + (1 << scale)) >> (scale + 1)) as u32 }
 }
 
 /// Four codes of 8 bits.

@@ -12,8 +12,8 @@ use raydsl::sampling::{
 use raydsl::{Type, kernel};
 use raydsl_tests::rng::Rng as Source;
 
-use super::super::Measured;
 use super::super::statistics::Histogram;
+use super::super::{Measure, Measured};
 use crate::outcome::Outcome;
 use crate::row::{Bound, Row, Unit};
 
@@ -271,10 +271,7 @@ impl Table {
     }
 
     /// Measures with the one kernel of tables.
-    fn measured(
-        &self,
-        measure: &dyn Fn(&[Kernel<'_, (u32, Vec2, f32), Warped>]) -> Measured,
-    ) -> Measured {
+    fn measured(&self, measure: &Measure<'_, (u32, Vec2, f32), Warped>) -> Measured {
         let (cdf, size) = (self.table.cdf(), self.table.size());
         measure(&[kernel!(|_which: u32, u: Vec2, _p: f32| {
             let sample = sample_table_2d(u, cdf, size);

@@ -7,7 +7,7 @@ use raydsl::texture::{Address, Filter, TextureError};
 use raydsl_tests::rng::Rng;
 
 use self::reference::{exact_1d, exact_3d};
-use super::{Measured, fault, largest};
+use super::{Measure, Measured, fault, largest};
 use crate::measure::Run;
 use crate::outcome::Outcome;
 use crate::row::{Bound, Group, Row, Unit};
@@ -42,17 +42,11 @@ fn rows() -> Vec<Row> {
 }
 
 /// Measures with the one kernel for all textures of a dimension: filter and modes are host values.
-fn read_1d(
-    texture: &Texture1<'_, Vec4>,
-    measure: &dyn Fn(&[Kernel<'_, (f32,), Vec4>]) -> Measured,
-) -> Measured {
+fn read_1d(texture: &Texture1<'_, Vec4>, measure: &Measure<'_, (f32,), Vec4>) -> Measured {
     measure(&[kernel!(|u: f32| tex1(texture, u))])
 }
 
-fn read_3d(
-    texture: &Texture3<'_, f32>,
-    measure: &dyn Fn(&[Kernel<'_, (Vec3,), f32>]) -> Measured,
-) -> Measured {
+fn read_3d(texture: &Texture3<'_, f32>, measure: &Measure<'_, (Vec3,), f32>) -> Measured {
     measure(&[kernel!(|p: Vec3| tex3(texture, p))])
 }
 
