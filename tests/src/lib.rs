@@ -8,6 +8,7 @@
 pub mod adversary;
 pub mod check;
 pub mod close;
+pub mod filters;
 pub mod fuzz;
 pub mod gpu;
 pub mod hard_rays;

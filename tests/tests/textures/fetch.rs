@@ -7,11 +7,11 @@ use raydsl::texture::{
     Address, AsTextureRef, ColorSpace, Filtering, Texel, TexelValue, Texture, TextureError,
 };
 use raydsl::{assert_variants_agree, kernel, variant_test};
+use raydsl_tests::filters::texel_at;
 use raydsl_tests::levels::each_level_padded;
 use raydsl_tests::rng::Rng;
 use raydsl_tests::run_time::RunTime;
 
-use super::reference::at;
 use super::{ADDRESSES, FILTERS};
 
 /// Places inside and outside, some as far as a number goes.
@@ -58,7 +58,7 @@ fn expected<const D: usize>(texture: &Texture<'_, f32, D>, place: IVec3, level: 
     let first: usize = (0..level).map(|l| size_of(l).element_product() as usize).sum();
     let along = |axis: usize| {
         let mode = if axis < D { config.address[axis] } else { Address::Clamp };
-        at(place[axis].into(), size[axis].into(), mode)
+        texel_at(place[axis].into(), size[axis].into(), mode)
     };
     let in_level = (|| {
         let [w, h] = [size.x, size.y].map(i64::from);
