@@ -1,6 +1,6 @@
 // All public names of the library, of which the program uses no more than without them.
 
-#[allow(unused_imports)]
+#[allow(unused_imports, reason = "names that nothing uses are what is measured")]
 mod every_name {
     pub(crate) use raydsl::prelude::*;
 

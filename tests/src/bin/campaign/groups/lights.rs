@@ -10,10 +10,10 @@ use raydsl::light::{
     SphereShape,
 };
 use raydsl::prelude::*;
-use raydsl::shading::Surface;
 use raydsl::{Type, kernel};
 use raydsl_tests::rng::Rng as Source;
 
+use super::ball::Ball;
 use super::bsdfs::formulas;
 use super::largest;
 use super::statistics::Mean;
@@ -219,23 +219,6 @@ fn cone(name: &'static str, of: fn(&super::bsdfs::Formulas, f64) -> (f32, f64)) 
         });
         Ok(outcome.beside(largest(textbook)))
     })
-}
-
-#[primitive(sphere(center, radius))]
-struct Ball {
-    center: Vec3,
-    radius: f32,
-}
-
-#[kernel]
-impl Surface for Ball {
-    fn surface(&self, ray: Ray, hit: Hit) -> SurfacePoint {
-        self.surface_point(ray, hit)
-    }
-
-    fn albedo(&self, _ray: Ray, _hit: Hit) -> Vec3 {
-        Vec3::ONE
-    }
 }
 
 /// Paths inside of a sphere that shines with the radiance 1 and scatters 4/5: all in all 5.

@@ -1,6 +1,7 @@
 //! What is measured, a file for each subject.
 
 mod accumulation;
+mod ball;
 mod boxes;
 mod bsdfs;
 mod builders;

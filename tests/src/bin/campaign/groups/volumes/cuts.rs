@@ -1,31 +1,14 @@
 //! Parts of rays inside of balls.
 
 use raydsl::prelude::*;
-use raydsl::shading::Surface;
 use raydsl::volume::Cut;
 use raydsl::{Type, kernel};
 use raydsl_tests::hard_rays::EPS;
 use raydsl_tests::rng::Rng;
 
+use super::super::ball::Ball;
 use super::super::fault;
 use crate::row::{Bound, Row, Unit};
-
-#[primitive(sphere(center, radius))]
-struct Ball {
-    center: Vec3,
-    radius: f32,
-}
-
-#[kernel]
-impl Surface for Ball {
-    fn surface(&self, ray: Ray, hit: Hit) -> SurfacePoint {
-        self.surface_point(ray, hit)
-    }
-
-    fn albedo(&self, _ray: Ray, _hit: Hit) -> Vec3 {
-        Vec3::ONE
-    }
-}
 
 /// The parts of a ray, at most four: where each begins and ends; and the length outside of all.
 #[derive(Clone, Copy, Debug, Type)]
