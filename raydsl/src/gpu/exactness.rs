@@ -228,7 +228,7 @@ fn fused(a: f32, b: f32, c: f32) -> f32 {
         }
     }
 
-    /// WGSL alone lets a driver take `(a + b) - a` for `b`; where it does, that is found.
+    /// By an error that says why, and what to ask for instead.
     #[test]
     fn a_device_without_spirv_is_refused() {
         let Some(context) = crate::gpu::tests::context() else {
