@@ -46,12 +46,14 @@ impl Device {
         if let Some(made) = made {
             return Ok(made);
         }
-        let scheduler = Arc::new(match given {
+        let scheduler = match given {
             Some((device, queue)) => {
                 GpuScheduler::with_context(Context::from_wgpu(None, device, queue))
             }
             None => GpuScheduler::new()?,
-        });
+        };
+        // Nobody waits for a compiler: until it is done, packets draw.
+        let scheduler = Arc::new(scheduler.while_compiling(TiledScheduler::new()));
         self.state().made = Some(scheduler.clone());
         Ok(scheduler)
     }
@@ -59,6 +61,15 @@ impl Device {
     /// Returns whether the device is the window's, which can show a texture of it.
     pub(crate) fn is_of_window(&self) -> bool {
         self.state().given.is_some()
+    }
+
+    /// Returns whether [`Device::frame`] has nothing to compile, and begins to compile if it has.
+    pub(crate) fn is_ready(
+        &self,
+        kernel: &PictureKernel<'_>,
+        look: &Look,
+    ) -> Result<bool, GpuError> {
+        self.scheduler()?.prepare_frame(&look.pose.camera(), kernel)
     }
 
     /// Renders a picture with one ray for each pixel, which stays on the device.

@@ -1,6 +1,8 @@
 //! The device with its caches, held by an application.
 
 use std::fmt;
+#[cfg(not(target_family = "wasm"))]
+use std::path::Path;
 use std::sync::Mutex;
 #[cfg(not(target_family = "wasm"))]
 use std::sync::OnceLock;
@@ -12,7 +14,10 @@ use super::error::{GpuError, one_line};
 #[cfg(not(target_family = "wasm"))]
 use super::exactness::Exactness;
 use super::float_controls::FloatControls;
-use super::pipeline::{Checks, Pipelines};
+use super::pipeline::Checks;
+#[cfg(not(target_family = "wasm"))]
+use super::pipeline_file::PipelineFile;
+use super::pipelines::Pipelines;
 use super::slot::Slot;
 use super::textures::Textures;
 use crate::machine::Modules;
@@ -32,7 +37,7 @@ pub struct Context {
     pub(super) checks: Checks,
     pub(super) uploads: Mutex<Uploads>,
     pub(super) textures: Mutex<Textures>,
-    pub(super) pipelines: Mutex<Pipelines>,
+    pub(super) pipelines: Pipelines,
     pub(super) modules: Mutex<Modules>,
     /// Buffers of finished dispatches, reused by the next ones.
     pub(super) idle: Mutex<Vec<Slot>>,
@@ -81,7 +86,7 @@ impl Context {
             checks: Checks::Full,
             uploads: Mutex::default(),
             textures: Mutex::default(),
-            pipelines: Mutex::default(),
+            pipelines: Pipelines::default(),
             modules: Mutex::default(),
             idle: Mutex::default(),
         }
@@ -112,6 +117,47 @@ impl Context {
         self
     }
 
+    /// Keeps compiled pipelines in a file of `folder` from one run of a program to the next.
+    ///
+    /// The file is read here. It is written when the context is dropped, and by
+    /// [`Context::save_pipelines`], whole or not at all: programs may share the folder. Its name is that
+    /// of the adapter; one that is missing, damaged, or of another driver is as good as empty. It does
+    /// not shrink: delete it once in a while.
+    ///
+    /// Only Vulkan has such caches, and a device of the application needs
+    /// `Features::PIPELINE_CACHE`; elsewhere nothing is kept. Drivers of desktop cards keep files of
+    /// their own as well.
+    ///
+    /// # Errors
+    ///
+    /// If the file exists and cannot be read.
+    ///
+    /// # Safety
+    ///
+    /// Nobody else may change the file: drivers trust what is in it. A checksum finds accidents only.
+    #[cfg(not(target_family = "wasm"))]
+    pub unsafe fn with_pipeline_cache(
+        mut self,
+        folder: impl AsRef<Path>,
+    ) -> Result<Self, GpuError> {
+        // SAFETY: the caller vouches for the file.
+        let file = unsafe { PipelineFile::open(&self.gpu, &self.adapter, folder.as_ref()) }?;
+        self.pipelines.reset();
+        self.pipelines.file = file;
+        Ok(self)
+    }
+
+    /// Writes the file of [`Context::with_pipeline_cache`] and returns the bytes that the driver keeps:
+    /// 0 if it keeps nothing, or there is no file.
+    ///
+    /// # Errors
+    ///
+    /// If it cannot be written.
+    #[cfg(not(target_family = "wasm"))]
+    pub fn save_pipelines(&self) -> Result<u64, GpuError> {
+        self.pipelines.file.as_ref().map_or(Ok(0), PipelineFile::write)
+    }
+
     /// Chooses the runtime checks of the shaders compiled from now on.
     ///
     /// # Safety
@@ -121,7 +167,7 @@ impl Context {
     /// clamp. With [`Checks::Full`] there is no condition.
     pub unsafe fn with_checks(mut self, checks: Checks) -> Self {
         self.checks = checks;
-        self.forget_pipelines();
+        self.pipelines.reset();
         self
     }
 
@@ -201,11 +247,6 @@ impl Context {
         *self.exactness.get_or_init(|| Exactness::of(self))
     }
 
-    /// Forgets the pipelines, and how many there were.
-    pub(super) fn forget_pipelines(&self) {
-        *lock(&self.pipelines) = Pipelines::default();
-    }
-
     /// Returns the bytes of scene data uploaded to the device so far.
     pub fn uploaded_bytes(&self) -> u64 {
         lock(&self.uploads).uploaded() + lock(&self.textures).uploaded()
@@ -231,14 +272,14 @@ impl Context {
 
     /// Returns the number of shaders compiled so far.
     pub fn compiled(&self) -> u64 {
-        lock(&self.pipelines).compiled()
+        self.pipelines.compiled()
     }
 
     /// Returns the total compilation time: parsing, validating and translating the text, and the
     /// driver's immediate work on it. Work that the driver defers to the first dispatch is in that
     /// dispatch's time.
     pub fn compile_time(&self) -> Duration {
-        lock(&self.pipelines).compile_time()
+        self.pipelines.compile_time()
     }
 
     /// Frees the scene buffers of one owner; they are uploaded again when needed.
@@ -287,7 +328,7 @@ impl Context {
     fn begin_again(&self, error: GpuError) -> GpuError {
         lock(&self.uploads).clear();
         lock(&self.textures).clear();
-        lock(&self.pipelines).clear();
+        self.pipelines.clear();
         lock(&self.idle).clear();
         error
     }
@@ -343,7 +384,7 @@ async fn adapter() -> Result<wgpu::Adapter, GpuError> {
 async fn device(adapter: &wgpu::Adapter) -> Result<(wgpu::Device, wgpu::Queue), GpuError> {
     let mut features = wgpu::Features::TIMESTAMP_QUERY;
     if adapter.get_info().backend == wgpu::Backend::Vulkan {
-        features |= wgpu::Features::PASSTHROUGH_SHADERS;
+        features |= wgpu::Features::PASSTHROUGH_SHADERS | wgpu::Features::PIPELINE_CACHE;
     }
     let request = adapter.request_device(&wgpu::DeviceDescriptor {
         label: Some("raydsl"),

@@ -60,6 +60,17 @@ pub enum GpuError {
         /// The message of wgpu or of the driver.
         message: String,
     },
+    /// The file of compiled pipelines cannot be read or written.
+    #[error(
+        "the pipelines in {path} cannot be read or written ({reason}): give \
+         Context::with_pipeline_cache a folder of the program's own"
+    )]
+    PipelineFile {
+        /// The file.
+        path: String,
+        /// The system's words.
+        reason: String,
+    },
     /// One buffer would be larger than the device allows.
     #[error(
         "{name} needs a buffer of {bytes} bytes but max_buffer_size is {limit}: use smaller \

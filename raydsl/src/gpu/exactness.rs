@@ -37,7 +37,7 @@ impl Exactness {
             return native(None);
         }
         let found = differences(context, &module(QUOTIENT, ROOT));
-        context.forget_pipelines();
+        context.pipelines.reset();
         // A kernel that fails will fail again, and then the error is returned.
         let Ok(found) = found else {
             return native(Some("a kernel that tests its arithmetic failed"));

@@ -11,6 +11,8 @@
 //! functions are awaited inside the plain ones.
 
 mod answers;
+#[cfg(not(target_family = "wasm"))]
+mod background;
 mod buffers;
 mod chunks;
 mod clock;
@@ -23,6 +25,9 @@ mod float_controls;
 #[cfg(not(target_family = "wasm"))]
 mod interface;
 mod pipeline;
+#[cfg(not(target_family = "wasm"))]
+mod pipeline_file;
+mod pipelines;
 mod run;
 mod scheduler;
 mod scopes;

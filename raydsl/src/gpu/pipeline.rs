@@ -1,10 +1,8 @@
-//! Compute pipelines of kernels, each compiled once.
+//! Compute pipelines of kernels: their bindings and their compilation.
 
-use std::collections::HashMap;
 use std::num::NonZeroU64;
 use std::sync::Arc;
 use std::sync::atomic::AtomicU64;
-use std::time::Duration;
 
 use super::device::{Gpu, typed};
 use super::error::{GpuError, one_line};
@@ -12,7 +10,6 @@ use super::float_controls::FloatControls;
 #[cfg(not(target_family = "wasm"))]
 use super::spirv;
 use super::tiles::FIRST_GOAL;
-use crate::run::clock::Instant;
 
 /// The runtime checks that wgpu adds to a shader.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, Default)]
@@ -29,7 +26,6 @@ pub enum Checks {
 pub(super) struct Pipeline {
     pub(super) compute: wgpu::ComputePipeline,
     pub(super) layout: wgpu::BindGroupLayout,
-    bindings: Bindings,
     /// Samples per dispatch at the end of the last run: the next one starts there.
     pub(super) goal: Arc<AtomicU64>,
 }
@@ -86,72 +82,25 @@ pub(super) fn stored_parameters(source: &str) -> Option<String> {
     source.contains(PARAMETERS).then(|| source.replacen(PARAMETERS, stored, 1))
 }
 
-/// The pipelines compiled so far, by their text.
-#[derive(Default)]
-pub(super) struct Pipelines {
-    /// Pipelines by text. It nearly always determines the bindings; if not, there is one entry for
-    /// each.
-    by_source: HashMap<String, Vec<Pipeline>>,
-    compiled: u64,
-    compile_time: Duration,
-}
-
-impl Pipelines {
-    /// Returns the number of shaders compiled so far.
-    pub(super) fn compiled(&self) -> u64 {
-        self.compiled
-    }
-
-    /// Returns the total compilation time.
-    pub(super) fn compile_time(&self) -> Duration {
-        self.compile_time
-    }
-
-    /// Drops all pipelines: one of them may be invalid.
-    pub(super) fn clear(&mut self) {
-        self.by_source.clear();
-    }
-
-    /// Returns the pipeline of a text, compiled if it is new.
-    pub(super) fn get(
-        &mut self,
-        gpu: &Gpu,
-        checks: Checks,
-        source: &str,
-        bindings: &Bindings,
-    ) -> Result<Pipeline, GpuError> {
-        let known = self.by_source.get(source).into_iter().flatten();
-        if let Some(pipeline) = known.into_iter().find(|known| known.bindings == *bindings) {
-            return Ok(pipeline.clone());
-        }
-        let start = Instant::now();
-        let pipeline = compile(gpu, checks, source, bindings)?;
-        self.compile_time += start.elapsed();
-        self.compiled += 1;
-        let same_text = self.by_source.entry(source.to_owned()).or_default();
-        same_text.push(pipeline.clone());
-        Ok(pipeline)
-    }
-}
-
 /// Compiles a pipeline from a text.
 ///
 /// The layout lists every binding of the module, used or not: a layout deduced from the shader
 /// would omit unused bindings, and bind groups would differ.
-fn compile(
+pub(super) fn compile(
     gpu: &Gpu,
     checks: Checks,
     source: &str,
     bindings: &Bindings,
+    cache: Option<&wgpu::PipelineCache>,
 ) -> Result<Pipeline, GpuError> {
     // What wgpu translates it also checks against the layout.
     #[cfg(not(target_family = "wasm"))]
     if let Some(controls) = bindings.exact {
         let (module, sizes) = exact_shader(gpu, checks, source, bindings, controls)?;
-        return assemble(gpu, checks, &module, bindings, &sizes);
+        return assemble(gpu, checks, &module, bindings, &sizes, cache);
     }
     let module = shader(gpu, checks, source)?;
-    assemble(gpu, checks, &module, bindings, &Sizes::new())
+    assemble(gpu, checks, &module, bindings, &Sizes::new(), cache)
 }
 
 /// Makes a pipeline of a module.
@@ -161,18 +110,14 @@ fn assemble(
     module: &wgpu::ShaderModule,
     bindings: &Bindings,
     sizes: &Sizes,
+    cache: Option<&wgpu::PipelineCache>,
 ) -> Result<Pipeline, GpuError> {
     let (compute, layout) = gpu.explained(|| {
         let layout = layout(&gpu.device, bindings, sizes);
-        let made = (pipeline(&gpu.device, module, &layout, checks), layout);
+        let made = (pipeline(&gpu.device, module, &layout, checks, cache), layout);
         (made, |error| std::future::ready(failed(error)))
     })?;
-    Ok(Pipeline {
-        compute,
-        layout,
-        bindings: bindings.clone(),
-        goal: Arc::new(AtomicU64::new(FIRST_GOAL)),
-    })
+    Ok(Pipeline { compute, layout, goal: Arc::new(AtomicU64::new(FIRST_GOAL)) })
 }
 
 /// Returns the error for a module of which no pipeline could be made.
@@ -188,6 +133,7 @@ fn pipeline(
     module: &wgpu::ShaderModule,
     layout: &wgpu::BindGroupLayout,
     checks: Checks,
+    cache: Option<&wgpu::PipelineCache>,
 ) -> wgpu::ComputePipeline {
     let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
         label: Some("raydsl"),
@@ -203,7 +149,7 @@ fn pipeline(
             zero_initialize_workgroup_memory: checks == Checks::Full,
             ..Default::default()
         },
-        cache: None,
+        cache,
     })
 }
 

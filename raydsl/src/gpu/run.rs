@@ -10,6 +10,7 @@ use super::context::Context;
 use super::device::lock;
 use super::error::GpuError;
 use super::pipeline::{Bindings, Pipeline, Sampled, Storage, stored_parameters};
+use super::pipelines::PipelineSource;
 use super::slot::{Finished, InFlight, Pass, Slot};
 use super::textures::BoundTexture;
 use super::tiles::{Tiler, next_goal};
@@ -237,6 +238,14 @@ impl Context {
 
     /// Returns the compiled kernel.
     fn pipeline(&self, module: &Module) -> Result<Pipeline, GpuError> {
+        self.pipelines.get(&self.gpu, self.checks, &self.pipeline_source(module)?)
+    }
+
+    /// Returns what the kernel is compiled from.
+    pub(super) fn pipeline_source<'m>(
+        &self,
+        module: &'m Module,
+    ) -> Result<PipelineSource<'m>, GpuError> {
         let sampled = module.textures.iter().map(|texture| Sampled {
             binding: texture.binding,
             is_volume: texture.layout.is_volume,
@@ -254,8 +263,8 @@ impl Context {
         let exact = self.spirv.filter(|_| module.arithmetic == Arithmetic::Strict);
         let sampled = sampled.collect();
         let bindings = Bindings { has_stored_parameters, storage, sampled, exact };
-        let source = stored.as_ref().unwrap_or(&module.source);
-        lock(&self.pipelines).get(&self.gpu, self.checks, source, &bindings)
+        let text = stored.map_or(Cow::Borrowed(&*module.source), Cow::Owned);
+        Ok(PipelineSource { text, bindings })
     }
 
     /// Uploads the kernel's uniform buffer.

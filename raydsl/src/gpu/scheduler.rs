@@ -2,9 +2,12 @@
 
 use std::borrow::Cow;
 use std::ops::ControlFlow;
+use std::sync::Arc;
 #[cfg(not(target_family = "wasm"))]
 use std::time::Duration;
 
+#[cfg(not(target_family = "wasm"))]
+use super::background::{Background, Compiled, Handover};
 use super::device::lock;
 use super::run::{Grid, Outputs, Teller};
 use super::window::check_target;
@@ -21,7 +24,7 @@ use crate::render::{
     recorded, timing_of,
 };
 #[cfg(not(target_family = "wasm"))]
-use crate::render::{Pace, Renderer};
+use crate::render::{Pace, Renderer, Scheduler, TiledScheduler};
 
 /// A visitor of the buffers that a kernel may read.
 type Visit<'a> = &'a mut dyn FnMut(&dyn Resource);
@@ -42,7 +45,12 @@ type Resources<'a> = &'a dyn Fn(Visit<'_>);
 /// same results; the thread that polls them waits for the device.
 #[derive(Debug)]
 pub struct GpuScheduler {
-    context: Context,
+    context: Arc<Context>,
+    #[cfg(not(target_family = "wasm"))]
+    background: Background,
+    /// Who renders while the device compiles.
+    #[cfg(not(target_family = "wasm"))]
+    host: Option<TiledScheduler>,
 }
 
 impl GpuScheduler {
@@ -65,9 +73,57 @@ impl GpuScheduler {
         Ok(Self::with_context(Context::open().await?))
     }
 
-    /// Uses a context, for example of the application's own device and queue.
-    pub fn with_context(context: Context) -> Self {
-        Self { context }
+    /// Uses a context, for example of the application's own device and queue; schedulers may share
+    /// one in an `Arc`.
+    pub fn with_context(context: impl Into<Arc<Context>>) -> Self {
+        Self {
+            context: context.into(),
+            #[cfg(not(target_family = "wasm"))]
+            background: Background::default(),
+            #[cfg(not(target_family = "wasm"))]
+            host: None,
+        }
+    }
+
+    /// Renders on the CPU while the device compiles a kernel, so that the first picture does not wait:
+    /// the CPU's variants are compiled with the program, for every scene.
+    ///
+    /// A kernel that is new to the device is compiled on a thread of its own. Until that ends, frames,
+    /// passes over films and batches are the host's; a long one is handed over when it ends. The bits
+    /// are the same where the device is [exact](Context::is_exact); elsewhere those of the two
+    /// variants mix. [`Timing::dispatches`] is 0 where the host did all of the work, and
+    /// [`Timing::device_ms`] is `None`. [`GpuScheduler::frame_into`] and the `async` functions wait for
+    /// the device.
+    ///
+    /// ```no_run
+    /// # use raydsl::prelude::*;
+    /// let gpu = GpuScheduler::new()?.while_compiling(TiledScheduler::new());
+    /// let camera = Pinhole::new(vec3(0.0, 0.0, 5.0), Vec3::ZERO, Vec3::Y, 1.0);
+    /// let sky = kernel!(|ray: Ray| ray.direction.y);
+    /// gpu.frame(&camera, &sky, &mut Image::filled(640, 480, 0.0))?;
+    /// # Ok::<(), raydsl::gpu::GpuError>(())
+    /// ```
+    #[cfg(not(target_family = "wasm"))]
+    #[must_use]
+    pub fn while_compiling(self, host: TiledScheduler) -> Self {
+        Self { host: Some(host), ..self }
+    }
+
+    /// Returns whether frames of this kernel are compiled for the device, and begins to compile them on a
+    /// thread of its own if they are not: for a program that shows something else meanwhile. The size
+    /// of a frame makes no difference.
+    ///
+    /// # Errors
+    ///
+    /// If the device refused the kernel, or is lost. The next call tries again.
+    #[cfg(not(target_family = "wasm"))]
+    pub fn prepare_frame<C: Camera, A: FilmArgs, R: Type>(
+        &self,
+        camera: &C,
+        kernel: &Kernel<'_, A, R>,
+    ) -> Result<bool, GpuError> {
+        let module = self.module(&Frame { rays: camera.begin_frame(1, 1), kernel });
+        Ok(matches!(self.background.state(&self.context, &module)?, Compiled::Ready))
     }
 
     /// Returns the device with its caches.
@@ -193,9 +249,7 @@ impl GpuScheduler {
         inputs: &[A],
         outputs: &mut [R],
     ) -> Result<Timing, GpuError> {
-        let describe = |out: &mut Description| kernel.describe(out);
-        let identity = kernel.identity(&describe);
-        let module = self.known_module(&identity, kernel.frame(), &|| kernel.record());
+        let module = self.batch_module(kernel);
         let each = stride(A::SCHEMA);
         let mut bytes = vec![0; each * inputs.len()];
         for (a, out) in inputs.iter().zip(bytes.chunks_exact_mut(each)) {
@@ -253,6 +307,11 @@ impl GpuScheduler {
         let describe = |out: &mut Description| kernel.describe(out);
         let record = || recorded(shot);
         self.known_module(&kernel.identity(&describe), KernelFrame::new(frame), &record)
+    }
+
+    fn batch_module<A: Type, R: Type>(&self, kernel: &Kernel<'_, A, R>) -> Module {
+        let describe = |out: &mut Description| kernel.describe(out);
+        self.known_module(&kernel.identity(&describe), kernel.frame(), &|| kernel.record())
     }
 
     /// Returns the module of a kernel in a frame; `record` records it if it is new.
@@ -348,8 +407,16 @@ impl Renderer for GpuScheduler {
         shot: &S,
         effort: Effort,
         image: &mut Image<S::Output>,
-        observer: Option<Observer<'_>>,
+        mut observer: Option<Observer<'_>>,
     ) -> Result<ControlFlow<Timing, Timing>, GpuError> {
+        if let Some(host) = &self.host
+            && let Compiled::Running(end) =
+                self.background.state(&self.context, &self.module(shot))?
+            && let Some(end) =
+                shoot_on(host, shot, effort, image, &mut observer, Handover::new(end))
+        {
+            return Ok(end);
+        }
         pollster::block_on(self.shoot_async(shot, effort, image, observer))
     }
 
@@ -363,7 +430,69 @@ impl Renderer for GpuScheduler {
         inputs: &[A],
         outputs: &mut [R],
     ) -> Result<Timing, GpuError> {
-        pollster::block_on(self.batch_async(kernel, inputs, outputs))
+        let mut done = 0;
+        let mut timing = Timing::default();
+        if let Some(host) = &self.host
+            && inputs.len() == outputs.len()
+            && let Compiled::Running(end) =
+                self.background.state(&self.context, &self.batch_module(kernel))?
+        {
+            let handover = Handover::new(end);
+            while done < inputs.len() && (done == 0 || !handover.is_due(share(done, inputs.len())))
+            {
+                let end = inputs.len().min(done + BATCH);
+                host.run_batch(kernel, &inputs[done..end], &mut outputs[done..end]);
+                done = end;
+            }
+            timing.wall_ms = handover.wall_ms();
+            if done == inputs.len() {
+                return Ok(timing);
+            }
+        }
+        timing +=
+            pollster::block_on(self.batch_async(kernel, &inputs[done..], &mut outputs[done..]))?;
+        Ok(timing)
+    }
+}
+
+/// Elements of a batch that the host does before it asks whether the device can go on.
+#[cfg(not(target_family = "wasm"))]
+const BATCH: usize = 1 << 16;
+
+#[cfg(not(target_family = "wasm"))]
+fn share(done: usize, all: usize) -> f64 {
+    done as f64 / all as f64
+}
+
+/// Renders on the host, and returns nothing if the device has to take over; `image` has the result only
+/// when it is complete.
+#[cfg(not(target_family = "wasm"))]
+fn shoot_on<S: Shot>(
+    host: &TiledScheduler,
+    shot: &S,
+    effort: Effort,
+    image: &mut Image<S::Output>,
+    observer: &mut Option<Observer<'_>>,
+    handover: Handover,
+) -> Option<ControlFlow<Timing, Timing>> {
+    let mut made = image.clone();
+    let mut is_handed_over = false;
+    let mut watch = |share| {
+        is_handed_over = handover.is_due(share);
+        if is_handed_over {
+            return ControlFlow::Break(());
+        }
+        observer.as_mut().map_or(ControlFlow::Continue(()), |observer| observer(share))
+    };
+    let Ok(end) = host.shoot(shot, effort, &mut made, Some(&mut watch));
+    let timing = Timing { wall_ms: handover.wall_ms(), ..Timing::default() };
+    match end {
+        ControlFlow::Continue(()) => {
+            *image = made;
+            Some(ControlFlow::Continue(timing))
+        }
+        ControlFlow::Break(()) if is_handed_over => None,
+        ControlFlow::Break(()) => Some(ControlFlow::Break(timing)),
     }
 }
 

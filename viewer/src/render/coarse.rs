@@ -36,8 +36,10 @@ impl Worker<'_> {
         let side = |n: u32| ((f64::from(n) * scale).round() as u32).clamp(1, n);
         let (width, height) = (side(look.size.0), side(look.size.1));
         let start = Instant::now();
-        let is_picture = look.show == Show::Picture;
-        let share = if look.variant == Variant::Wgsl && is_picture && self.device.is_of_window() {
+        let is_shown_there = look.variant == Variant::Wgsl
+            && look.show == Show::Picture
+            && self.device.is_of_window();
+        let share = if is_shown_there && self.device.is_ready(kernel, look)? {
             let texture = self.device.frame(kernel, look, (width, height))?;
             self.show_on_device(texture, start.elapsed());
             1.0
