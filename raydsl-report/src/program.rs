@@ -30,6 +30,8 @@ pub struct Program {
     pub constants: Vec<String>,
     /// How large it is.
     pub size: ProgramSize,
+    /// The words of its SPIR-V, as naga writes it without names and without bounds checks.
+    pub spirv: Vec<u32>,
 }
 
 /// How large a program is.
@@ -100,6 +102,7 @@ impl Program {
             numbers: numbers.map(|g| members(&module, g.ty)).unwrap_or_default(),
             constants: constants.chain(overrides).collect(),
             size,
+            spirv: words,
         })
     }
 

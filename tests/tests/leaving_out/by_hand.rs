@@ -2,9 +2,10 @@
 //! many instructions each has.
 //!
 //! What is written by hand has the buffers and the numbers of the generated text, and nothing else of
-//! it.
+//! it. `RAYDSL_SPIRV=FOLDER` writes the SPIR-V of both there, for tools that optimise it.
 
 use std::error::Error;
+use std::path::Path;
 
 use raydsl::integrators::PathLimits;
 use raydsl::light::Lights;
@@ -38,8 +39,14 @@ fn compare<A: FilmArgs, R: Type + PartialEq + std::fmt::Debug>(
 ) -> Counts {
     let (width, height) = (96, 64);
     let text = kernel.record_frame(camera, (width, height)).module(&Default::default()).source;
-    let own = Program::read(&text)?.size.code;
-    let counts = [own, Program::read(&with_numbers(by_hand, &text))?.size.code];
+    let programs = [Program::read(&text)?, Program::read(&with_numbers(by_hand, &text))?];
+    if let Some(folder) = std::env::var_os("RAYDSL_SPIRV") {
+        for (program, origin) in programs.iter().zip(["generated", "by_hand"]) {
+            let bytes: Vec<u8> = program.spirv.iter().flat_map(|word| word.to_le_bytes()).collect();
+            std::fs::write(Path::new(&folder).join(format!("{name}_{origin}.spv")), bytes)?;
+        }
+    }
+    let counts = programs.map(|program| program.size.code);
     let Some(gpu) = gpu() else { return Ok(counts) };
     let zero = R::read(&vec![0; R::SCHEMA.size()]);
     let mut pictures = [(); 2].map(|()| Image::filled(width, height, zero));

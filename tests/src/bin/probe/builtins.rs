@@ -110,8 +110,14 @@ const LARGE: Domain = Domain::Magnitudes(-24, 24);
 const POSITIVE: Domain = Domain::Positive(-100, 100);
 const TURN: Domain = Domain::Interval(-PI, PI);
 const UNIT: Domain = Domain::Interval(-1.0, 1.0);
+const NEAR_ONE: Domain = Domain::Interval(0.95, 1.05);
 
-static BUILTINS: [Builtin; 30] = [
+/// Of a matrix of these columns.
+fn determinant([a, b, c, d]: [f64; 4]) -> f64 {
+    a * d - b * c
+}
+
+static BUILTINS: [Builtin; 34] = [
     builtin("a + b", ALL, |[a, b, ..]| a + b, Bound::Rounded),
     builtin("a - b", ALL, |[a, b, ..]| a - b, Bound::Rounded),
     builtin("a * b", ALL, |[a, b, ..]| a * b, Bound::Rounded),
@@ -134,6 +140,9 @@ static BUILTINS: [Builtin; 30] = [
         |[a, b, ..]| a.abs().powf(b),
         Bound::Inherited,
     ),
+    // exp2(b * log2(a)): not a number for a negative base, and inexact where the exponent is large.
+    builtin("pow(a, 2.0)", Domain::Magnitudes(-3, 3), |[a, ..]| a * a, Bound::Inherited),
+    builtin("pow(a, 1000.0)", NEAR_ONE, |[a, ..]| a.powf(1000.0), Bound::Inherited),
     builtin("sin(a)", TURN, |[a, ..]| a.sin(), Bound::Absolute(1.0 / 2048.0)),
     builtin("cos(a)", TURN, |[a, ..]| a.cos(), Bound::Absolute(1.0 / 2048.0)),
     builtin("sin(a)", Domain::Interval(-6e4, 6e4), |[a, ..]| a.sin(), Bound::Inherited),
@@ -142,6 +151,9 @@ static BUILTINS: [Builtin; 30] = [
     builtin("acos(a)", UNIT, |[a, ..]| a.acos(), Bound::Inherited),
     builtin("atan(a)", LARGE, |[a, ..]| a.atan(), Bound::Ulp(4096.0)),
     builtin("atan2(a, b)", LARGE, |[a, b, ..]| a.atan2(b), Bound::Ulp(4096.0)),
+    builtin("determinant(mat2x2(a,b,c,d))", UNIT, determinant, Bound::Inherited),
+    // Columns that are nearly parallel.
+    builtin("determinant(mat2x2(a,b,c,d))", NEAR_ONE, determinant, Bound::Inherited),
     builtin("floor(a)", LARGE, |[a, ..]| a.floor(), Bound::Exact),
     builtin("trunc(a)", LARGE, |[a, ..]| a.trunc(), Bound::Exact),
     builtin("round(a)", LARGE, |[a, ..]| a.round_ties_even(), Bound::Exact),
@@ -231,8 +243,8 @@ fn ulp_of(x: f64) -> f64 {
 
 pub(crate) fn print(rows: &[Row]) {
     println!(
-        "\n{:<22}{:<18}{:>10}{:>12}{:>12}  {:<17}verdict",
-        "builtin", "inputs", "nearest %", "worst, ulp", "absolute", "WGSL's bound"
+        "\n{:<30}{:<18}{:>9}{:>11}{:>10}  {:<15}verdict",
+        "builtin", "inputs", "nearest %", "ulp", "absolute", "WGSL's bound"
     );
     for row in rows {
         let verdict = match row.holds {
@@ -241,7 +253,7 @@ pub(crate) fn print(rows: &[Row]) {
             Some(false) => "BROKEN",
         };
         println!(
-            "{:<22}{:<18}{:>10.2}{:>12.4}{:>12.2e}  {:<17}{verdict}",
+            "{:<30}{:<18}{:>9.2}{:>11.4}{:>10.2e}  {:<15}{verdict}",
             row.builtin,
             row.domain,
             100.0 * row.nearest,

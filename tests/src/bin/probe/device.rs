@@ -64,8 +64,12 @@ impl Device {
     /// Prints the adapter and the limits that decide how scenes are cut into windows.
     pub(crate) fn print_limits(&self) {
         println!("{}", self.name());
-        println!("results are those of the CPU's variants: {}", self.context.is_exact());
         let (limits, adapter) = (self.context.device().limits(), self.context.adapter_info());
+        let (device, queue) = (self.context.device().clone(), self.context.queue().clone());
+        match Context::from_wgpu(Some(adapter.clone()), device, queue).require_exact() {
+            Ok(_) => println!("strict kernels: taken, with the bits of the CPU's variants"),
+            Err(refusal) => println!("strict kernels: refused, {refusal}"),
+        }
         for (name, value) in [
             ("bytes of a storage binding", limits.max_storage_buffer_binding_size),
             ("bytes of a buffer", limits.max_buffer_size),
