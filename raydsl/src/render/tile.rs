@@ -105,6 +105,37 @@ impl Blocks {
     }
 }
 
+/// The places of all blocks in the order of their indices, without divisions.
+#[derive(Clone, Copy, Debug)]
+struct Places {
+    blocks: Blocks,
+    band: u32,
+    next: UVec2,
+    /// The first line of the band.
+    first: u32,
+}
+
+impl Places {
+    fn new(blocks: Blocks, band: u32) -> Self {
+        Self { blocks, band, next: UVec2::ZERO, first: 0 }
+    }
+
+    /// Returns the next place; there are as many as blocks.
+    fn next(&mut self) -> UVec2 {
+        let place = self.next;
+        self.next.y += 1;
+        let end = self.blocks.lines.min(self.first.saturating_add(self.band));
+        if self.next.y == end {
+            self.next = uvec2(place.x + 1, self.first);
+            if self.next.x == self.blocks.columns {
+                self.first = end;
+                self.next = uvec2(0, end);
+            }
+        }
+        place
+    }
+}
+
 impl<R> Grid<R> {
     fn blocks(&self) -> Blocks {
         let Self { width, height, edge, .. } = *self;
@@ -272,15 +303,15 @@ impl<S: Shot> PacketTask<S::Args, S::Result> for Packets<'_, '_, S> {
         let UVec2 { x: left, y: bottom } = tile.origin();
         let UVec2 { x: width, y: height } = tile.size();
         let blocks = Blocks { columns: width.div_ceil(bw), lines: height.div_ceil(bh) };
-        let band = (GANG_EDGE / bh).max(1);
+        let places = RefCell::new(Places::new(blocks, (GANG_EDGE / bh).max(1)));
         let tile = RefCell::new(tile);
-        fibers::each(blocks.count(), gang / L::N, &|packet| {
+        fibers::each(blocks.count(), gang / L::N, &|_| {
+            let UVec2 { x: bx, y: by } = places.borrow_mut().next() * uvec2(bw, bh);
             lanes.vectorize(
                 #[inline(always)]
                 || {
                     let columns = lanes.u32_from_fn(|l| l as u32 % bw);
                     let lines = lanes.u32_from_fn(|l| l as u32 / bw);
-                    let UVec2 { x: bx, y: by } = blocks.place(packet, band) * uvec2(bw, bh);
                     // At the tile's edge a packet is partly filled.
                     let (across, up) = (bw.min(width - bx), bh.min(height - by));
                     let m = Packet::with_bits(lanes, lanes_within(across, up, bw));
@@ -375,6 +406,20 @@ mod tests {
                 assert!(image.pixels().iter().all(|&n| n == 1), "{width} x {height}, {edge}");
                 image.tiles(edge).for_each_parallel(fill);
                 assert!(image.pixels().iter().all(|&n| n == 2), "{width} x {height}, {edge}");
+            }
+        }
+    }
+
+    #[test]
+    fn places_follow_their_numbers() {
+        for (columns, lines) in [(1, 1), (1, 9), (7, 1), (4, 4), (5, 7), (3, 8), (2, 17)] {
+            for band in [1, 2, 3, 8, 100, u32::MAX] {
+                let blocks = Blocks { columns, lines };
+                let mut places = Places::new(blocks, band);
+                for number in 0..blocks.count() {
+                    let expected = blocks.place(number, band);
+                    assert_eq!(places.next(), expected, "{blocks:?}, {band}, {number}");
+                }
             }
         }
     }
