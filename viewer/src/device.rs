@@ -13,8 +13,17 @@ use crate::subject::PictureKernel;
 struct State {
     /// The window's own, which kernels share as long as it works.
     given: Option<(wgpu::Device, wgpu::Queue)>,
-    made: Option<Arc<GpuScheduler>>,
+    made: Option<Schedulers>,
     presenter: Option<Presenter>,
+}
+
+/// Renderers of one device.
+#[derive(Clone, Debug)]
+struct Schedulers {
+    /// All of whose pictures are the device's.
+    patient: Arc<GpuScheduler>,
+    /// One that does not wait for a compiler: until it is done, packets draw.
+    eager: Arc<GpuScheduler>,
 }
 
 /// A device that threads share. After it is lost, the next use makes another one.
@@ -38,6 +47,15 @@ impl Device {
 
     /// Returns the renderer, which is made first if there is none.
     pub(crate) fn scheduler(&self) -> Result<Arc<GpuScheduler>, GpuError> {
+        Ok(self.schedulers()?.patient)
+    }
+
+    /// Returns one that draws by packets until a kernel is compiled.
+    pub(crate) fn eager_scheduler(&self) -> Result<Arc<GpuScheduler>, GpuError> {
+        Ok(self.schedulers()?.eager)
+    }
+
+    fn schedulers(&self) -> Result<Schedulers, GpuError> {
         let _making = self.making.lock().unwrap_or_else(PoisonError::into_inner);
         let (given, made) = {
             let state = self.state();
@@ -46,16 +64,17 @@ impl Device {
         if let Some(made) = made {
             return Ok(made);
         }
-        let scheduler = match given {
-            Some((device, queue)) => {
-                GpuScheduler::with_context(Context::from_wgpu(None, device, queue))
-            }
-            None => GpuScheduler::new()?,
+        let context = Arc::new(match given {
+            Some((device, queue)) => Context::from_wgpu(None, device, queue),
+            None => Context::new()?,
+        });
+        let eager = GpuScheduler::with_context(Arc::clone(&context));
+        let made = Schedulers {
+            patient: Arc::new(GpuScheduler::with_context(context)),
+            eager: Arc::new(eager.while_compiling(TiledScheduler::new())),
         };
-        // Nobody waits for a compiler: until it is done, packets draw.
-        let scheduler = Arc::new(scheduler.while_compiling(TiledScheduler::new()));
-        self.state().made = Some(scheduler.clone());
-        Ok(scheduler)
+        self.state().made = Some(made.clone());
+        Ok(made)
     }
 
     /// Returns whether the device is the window's, which can show a texture of it.
@@ -69,7 +88,7 @@ impl Device {
         kernel: &PictureKernel<'_>,
         look: &Look,
     ) -> Result<bool, GpuError> {
-        self.scheduler()?.prepare_frame(&look.pose.camera(), kernel)
+        self.eager_scheduler()?.prepare_frame(&look.pose.camera(), kernel)
     }
 
     /// Renders a picture with one ray for each pixel, which stays on the device.
@@ -95,25 +114,27 @@ impl Device {
 
     /// Forgets a device that is lost.
     pub(crate) fn forget(&self) {
-        *self.state() = State::default();
+        // Dropped once nobody waits for the lock: a thread may still compile.
+        let lost = std::mem::take(&mut *self.state());
+        drop(lost);
     }
 
     /// Returns the adapter's name, once the device is made.
     pub fn name(&self) -> Option<String> {
-        self.state().made.as_ref().map(|made| made.context().adapter_name())
+        self.state().made.as_ref().map(|made| made.patient.context().adapter_name())
     }
 
     /// Returns how many kernels were recorded, printed as WGSL and compiled so far.
     pub fn counts(&self) -> Option<[u64; 3]> {
         let state = self.state();
-        let context = state.made.as_ref()?.context();
+        let context = state.made.as_ref()?.patient.context();
         Some([context.recorded(), context.printed(), context.compiled()])
     }
 
     /// Destroys the device, as a driver does that resets the card, to see what happens then.
     pub fn destroy(&self) {
         if let Some(made) = &self.state().made {
-            made.context().device().destroy();
+            made.patient.context().device().destroy();
         }
     }
 }

@@ -174,7 +174,7 @@ impl Worker<'_> {
         let count = if job.coarse.is_none() { LONGEST_PASS } else { self.picture.next }.min(left);
         let start = Instant::now();
         let link = self.link;
-        let is_complete = self.add(kernel, look, &mut films, count, &mut |_| {
+        let is_complete = self.add(kernel, job, &mut films, count, &mut |_| {
             // A question waits for the end of a pass of two films, which are compared sample by
             // sample.
             if link.is_outdated(job.number) || (link.has_questions() && !is_compared) {
@@ -206,31 +206,38 @@ impl Worker<'_> {
     fn add(
         &self,
         kernel: &PictureKernel<'_>,
-        look: &Look,
+        job: &Job,
         films: &mut (Film, Option<Film>),
         samples: u32,
         observer: raydsl::render::Observer<'_>,
     ) -> Result<bool, GpuError> {
-        let is_whole =
-            self.add_with(kernel, look, look.variant, &mut films.0, samples, observer)?;
+        let look = &*job.look;
+        let is_whole = self.add_with(kernel, job, look.variant, &mut films.0, samples, observer)?;
         let (Some(film), Show::Difference(other)) = (&mut films.1, look.show) else {
             return Ok(is_whole);
         };
-        Ok(is_whole && self.add_with(kernel, look, other, film, samples, observer)?)
+        Ok(is_whole && self.add_with(kernel, job, other, film, samples, observer)?)
     }
 
     fn add_with(
         &self,
         kernel: &PictureKernel<'_>,
-        look: &Look,
+        job: &Job,
         variant: Variant,
         film: &mut Film,
         samples: u32,
         observer: raydsl::render::Observer<'_>,
     ) -> Result<bool, GpuError> {
+        let look = &*job.look;
         let (camera, sampling) = (look.pose.camera(), Sampling::new(PLANNED));
         let end = if variant == Variant::Wgsl {
-            let device = self.device.scheduler()?;
+            // Whoever looks at a picture does not wait; variants that are compared, and scripts, do.
+            let is_watched = job.coarse.is_some() && look.show == Show::Picture;
+            let device = if is_watched {
+                self.device.eager_scheduler()?
+            } else {
+                self.device.scheduler()?
+            };
             device
                 .accumulate_observed(&camera, kernel, &sampling, film, samples, observer)?
                 .is_continue()

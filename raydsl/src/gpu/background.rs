@@ -1,11 +1,9 @@
-//! Compilation on a thread of its own, and what the host does meanwhile.
+//! Compilation on threads of their own.
 
 use std::fmt;
-use std::panic::resume_unwind;
-use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Arc, Mutex};
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::{Arc, Mutex, OnceLock};
 use std::thread::{Builder, JoinHandle};
-use std::time::{Duration, Instant};
 
 use super::context::Context;
 use super::device::lock;
@@ -13,86 +11,123 @@ use super::error::GpuError;
 use super::pipelines::PipelineSource;
 use crate::machine::wgsl::Module;
 
-/// The host goes on with a picture that it ends within this time, rather than give it to the device.
-const SOON: Duration = Duration::from_millis(50);
+/// The most refusals that are remembered.
+const REFUSALS: usize = 16;
+
+/// The end of a compilation, which another thread waits for.
+pub(super) type Outcome = Arc<OnceLock<Result<(), GpuError>>>;
 
 /// Compilations on threads of their own. Dropping them waits for their ends: a driver that compiles
 /// while the process exits may crash.
 #[derive(Default)]
 pub(super) struct Background {
-    running: Mutex<Vec<Compilation>>,
+    /// Those that run, and those whose error is still to be told.
+    known: Mutex<Vec<Compilation>>,
+}
+
+/// What a thread does.
+#[derive(Clone, PartialEq, Eq)]
+enum Work {
+    /// It finds out what the device's arithmetic is: texts depend on it.
+    Exactness,
+    Pipeline(PipelineSource<'static>),
 }
 
 struct Compilation {
-    source: PipelineSource<'static>,
-    is_done: Arc<AtomicBool>,
+    work: Work,
+    outcome: Outcome,
     /// It is taken when the compilation is dropped.
-    thread: Option<JoinHandle<Result<(), GpuError>>>,
-}
-
-/// The state of a pipeline.
-pub(super) enum Compiled {
-    /// It can be used at once.
-    Ready,
-    /// Another thread compiles it, and will set this.
-    Running(Arc<AtomicBool>),
+    thread: Option<JoinHandle<()>>,
 }
 
 impl Background {
-    /// Returns whether a module's pipeline is compiled, and begins to compile it if nobody does.
+    /// Returns nothing if a module's pipeline is compiled, else what its end will be known by; begins to
+    /// compile it if nobody does.
     ///
-    /// The error of a compilation is returned once; the next call begins another one.
-    pub(super) fn state(
+    /// A text that was refused stays refused; after other errors the next call tries again.
+    pub(super) fn pending(
         &self,
         context: &Arc<Context>,
-        module: &Module,
-    ) -> Result<Compiled, GpuError> {
+        module: &dyn Fn() -> Module,
+    ) -> Result<Option<Outcome>, GpuError> {
+        context.gpu.poll();
         context.check()?;
-        let source = context.pipeline_source(module)?;
-        let mut running = lock(&self.running);
-        running.retain(|other| !other.is_done() || other.source == source);
-        if let Some(at) = running.iter().position(|known| known.source == source) {
-            if !running[at].is_done() {
-                return Ok(Compiled::Running(Arc::clone(&running[at].is_done)));
-            }
-            running.swap_remove(at).end()?;
+        if !context.exactness_is_at_hand() {
+            self.of(context, Work::Exactness)?;
+            // Whoever compiles for its kernel next has the pipeline still to do.
+            return Ok(Some(Outcome::default()));
         }
+        let module = module();
+        let source = context.pipeline_source(&module)?;
         if context.pipelines.has(&source) {
-            return Ok(Compiled::Ready);
+            return Ok(None);
         }
-        match Compilation::begin(Arc::clone(context), source.into_owned()) {
-            Some(begun) => {
-                let is_done = Arc::clone(&begun.is_done);
-                running.push(begun);
-                Ok(Compiled::Running(is_done))
-            }
-            // The system gives no thread: the caller's compiles.
-            None => Ok(Compiled::Ready),
+        self.of(context, Work::Pipeline(source.into_owned()))
+    }
+
+    /// Returns the outcome of some work that goes on, or begins it; nothing if the caller may do it.
+    fn of(&self, context: &Arc<Context>, work: Work) -> Result<Option<Outcome>, GpuError> {
+        let mut known = lock(&self.known);
+        known.retain(|other| other.outcome.get().is_none_or(Result::is_err));
+        if let Some(at) = known.iter().position(|other| other.work == work) {
+            return match known[at].outcome.get().cloned() {
+                None => Ok(Some(Arc::clone(&known[at].outcome))),
+                Some(Ok(())) => Ok(None),
+                Some(Err(refusal)) if is_of_the_text(&refusal) => Err(refusal),
+                Some(Err(error)) => {
+                    known.remove(at);
+                    Err(error)
+                }
+            };
         }
+        let is_over = |other: &Compilation| other.outcome.get().is_some();
+        if known.iter().filter(|other| is_over(other)).count() > REFUSALS
+            && let Some(oldest) = known.iter().position(is_over)
+        {
+            known.remove(oldest);
+        }
+        let begun = Compilation::begin(Arc::clone(context), work);
+        let outcome = begun.as_ref().map(|begun| Arc::clone(&begun.outcome));
+        known.extend(begun);
+        Ok(outcome)
     }
 }
 
+/// Whether an error is one of the program: it will not do another time.
+fn is_of_the_text(error: &GpuError) -> bool {
+    matches!(error, GpuError::ShaderInvalid { .. } | GpuError::PipelineFailed { .. })
+}
+
 impl Compilation {
-    fn begin(context: Arc<Context>, source: PipelineSource<'static>) -> Option<Self> {
-        let is_done = Arc::new(AtomicBool::new(false));
-        let work = {
-            let (source, end) = (source.clone(), SetAtEnd(Arc::clone(&is_done)));
-            move || {
-                let _end = end;
-                context.pipelines.get(&context.gpu, context.checks, &source).map(drop)
-            }
+    /// Returns nothing if the system gives no thread.
+    fn begin(context: Arc<Context>, work: Work) -> Option<Self> {
+        let outcome = Outcome::default();
+        let of_thread = (work.clone(), Arc::clone(&outcome));
+        let run = move || {
+            let (work, outcome) = of_thread;
+            let result = catch_unwind(AssertUnwindSafe(|| work.run(&context)));
+            // Nothing of the context outlives the outcome: its last owner may be waiting for it.
+            drop(context);
+            let _ = outcome.set(result.unwrap_or_else(|_| {
+                Err(GpuError::PipelineFailed { message: "the compiler panicked".to_owned() })
+            }));
         };
-        let thread = Builder::new().name("raydsl compiler".to_owned()).spawn(work).ok()?;
-        Some(Self { source, is_done, thread: Some(thread) })
+        let thread = Builder::new().name("raydsl compiler".to_owned()).spawn(run).ok()?;
+        Some(Self { work, outcome, thread: Some(thread) })
     }
+}
 
-    fn is_done(&self) -> bool {
-        self.is_done.load(Ordering::Acquire)
-    }
-
-    fn end(mut self) -> Result<(), GpuError> {
-        let thread = self.thread.take().map(JoinHandle::join);
-        thread.map_or(Ok(()), |end| end.unwrap_or_else(|panic| resume_unwind(panic)))
+impl Work {
+    fn run(&self, context: &Context) -> Result<(), GpuError> {
+        match self {
+            Self::Exactness => {
+                let _ = context.is_exact();
+                Ok(())
+            }
+            Self::Pipeline(source) => {
+                context.pipelines.get(&context.gpu, context.checks, source).map(drop)
+            }
+        }
     }
 }
 
@@ -104,40 +139,8 @@ impl Drop for Compilation {
     }
 }
 
-/// Tells that a thread is done, also if it panics.
-struct SetAtEnd(Arc<AtomicBool>);
-
-impl Drop for SetAtEnd {
-    fn drop(&mut self) {
-        self.0.store(true, Ordering::Release);
-    }
-}
-
 impl fmt::Debug for Background {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Background").field("running", &lock(&self.running).len()).finish()
-    }
-}
-
-/// Decides whether the host goes on with a picture.
-pub(super) struct Handover {
-    start: Instant,
-    is_compiled: Arc<AtomicBool>,
-}
-
-impl Handover {
-    pub(super) fn new(is_compiled: Arc<AtomicBool>) -> Self {
-        Self { start: Instant::now(), is_compiled }
-    }
-
-    /// Returns whether the device takes over, when the host has completed a share of a picture.
-    pub(super) fn is_due(&self, share: f64) -> bool {
-        let left = self.start.elapsed().as_secs_f64() * (1.0 / share.max(1e-9) - 1.0);
-        self.is_compiled.load(Ordering::Acquire) && left > SOON.as_secs_f64()
-    }
-
-    /// Returns the milliseconds since the host began.
-    pub(super) fn wall_ms(&self) -> f64 {
-        self.start.elapsed().as_secs_f64() * 1e3
+        f.debug_struct("Background").field("known", &lock(&self.known).len()).finish()
     }
 }

@@ -120,9 +120,9 @@ impl Context {
     /// Keeps compiled pipelines in a file of `folder` from one run of a program to the next.
     ///
     /// The file is read here. It is written when the context is dropped, and by
-    /// [`Context::save_pipelines`], whole or not at all: programs may share the folder. Its name is that
-    /// of the adapter; one that is missing, damaged, or of another driver is as good as empty. It does
-    /// not shrink: delete it once in a while.
+    /// [`Context::save_pipelines`], whole or not at all; of several programs the last one's stays. Its
+    /// name is that of the adapter; one that is missing, damaged, or of another driver is as good as
+    /// empty. It does not shrink: delete it once in a while.
     ///
     /// Only Vulkan has such caches, and a device of the application needs
     /// `Features::PIPELINE_CACHE`; elsewhere nothing is kept. Drivers of desktop cards keep files of
@@ -134,7 +134,8 @@ impl Context {
     ///
     /// # Safety
     ///
-    /// Nobody else may change the file: drivers trust what is in it. A checksum finds accidents only.
+    /// A file of that name in `folder`, if there is one, was written by this library, and nobody writes
+    /// there who is not trusted: drivers believe what is in it. A checksum finds accidents only.
     #[cfg(not(target_family = "wasm"))]
     pub unsafe fn with_pipeline_cache(
         mut self,
@@ -147,8 +148,8 @@ impl Context {
         Ok(self)
     }
 
-    /// Writes the file of [`Context::with_pipeline_cache`] and returns the bytes that the driver keeps:
-    /// 0 if it keeps nothing, or there is no file.
+    /// Writes the file of [`Context::with_pipeline_cache`] and returns the bytes of the driver's data,
+    /// its header included; 0 if there is no file.
     ///
     /// # Errors
     ///
@@ -240,6 +241,12 @@ impl Context {
         return self.exactness().quotients;
         #[cfg(target_family = "wasm")]
         Quotients::Native
+    }
+
+    /// Returns whether no kernel has to run to know whether the device is exact.
+    #[cfg(not(target_family = "wasm"))]
+    pub(super) fn exactness_is_at_hand(&self) -> bool {
+        self.exactness.get().is_some() || !Exactness::takes_a_kernel(self)
     }
 
     #[cfg(not(target_family = "wasm"))]

@@ -153,12 +153,16 @@ impl Gpu {
         if !matches!(error, GpuError::Rejected { .. }) || self.responds() {
             return error;
         }
-        // The callback with the reason is called from a poll.
-        let _ = catch_unwind(AssertUnwindSafe(|| self.device.poll(wgpu::PollType::Poll)));
+        self.poll();
         match self.check() {
             Err(known @ GpuError::DeviceLost { .. }) => known,
             _ => lost("it refuses every call"),
         }
+    }
+
+    /// Lets the device call back, as it does with the reason of its loss.
+    pub(super) fn poll(&self) {
+        let _ = catch_unwind(AssertUnwindSafe(|| self.device.poll(wgpu::PollType::Poll)));
     }
 
     /// Returns whether the device still creates a small buffer. A browser tells of a lost one by

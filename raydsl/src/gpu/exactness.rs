@@ -25,15 +25,19 @@ const ROOT: &str = include_str!("../machine/record/exact_root.wgsl");
 const COUNT: u32 = 1 << 16;
 
 impl Exactness {
+    /// Returns whether a kernel has to run. A device that is a CPU has its instructions, which are
+    /// those of the host, and no `fma` that could be relied on.
+    pub(super) fn takes_a_kernel(context: &Context) -> bool {
+        context.spirv.is_some() && context.adapter_info().device_type != wgpu::DeviceType::Cpu
+    }
+
     /// Runs quotients and roots of a context's device and compares them with the host's.
     pub(super) fn of(context: &Context) -> Self {
         let native = |obstacle| Self { quotients: Quotients::Native, obstacle };
         if context.spirv.is_none() {
             return native(Some(NO_SPIRV));
         }
-        // A device that is a CPU has its instructions, which are those of the host, and no `fma`
-        // that could be relied on.
-        if context.adapter_info().device_type == wgpu::DeviceType::Cpu {
+        if !Self::takes_a_kernel(context) {
             return native(None);
         }
         let found = differences(context, &module(QUOTIENT, ROOT));

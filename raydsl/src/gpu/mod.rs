@@ -24,6 +24,8 @@ mod exactness;
 mod float_controls;
 #[cfg(not(target_family = "wasm"))]
 mod interface;
+#[cfg(not(target_family = "wasm"))]
+mod meanwhile;
 mod pipeline;
 #[cfg(not(target_family = "wasm"))]
 mod pipeline_file;

@@ -1,9 +1,10 @@
 //! Compiled pipelines in a file, for the next run of a program.
 
 use std::fs;
-use std::io;
+use std::io::{self, Write};
 use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::time::SystemTime;
 
 use super::device::Gpu;
 use super::error::{GpuError, one_line};
@@ -43,42 +44,63 @@ impl PipelineFile {
             Err(error) if error.kind() == io::ErrorKind::NotFound => Vec::new(),
             Err(error) => return Err(failed(&path, &error)),
         };
-        let cache = gpu.guarded("the cache of pipelines", || {
-            // SAFETY: the caller vouches for the file; what was cut short or damaged since has
-            // another checksum. wgpu compares the bytes' header with the adapter and the driver.
-            unsafe {
-                gpu.device.create_pipeline_cache(&wgpu::PipelineCacheDescriptor {
-                    label: Some("raydsl"),
-                    data: content(&file),
-                    fallback: true,
-                })
-            }
-        })?;
+        let make = |data: Option<&[u8]>| {
+            gpu.guarded("the cache of pipelines", || {
+                // SAFETY: the caller vouches for the file; what was cut short or damaged since has
+                // another checksum. wgpu compares the data's header with the adapter and the driver.
+                unsafe {
+                    gpu.device.create_pipeline_cache(&wgpu::PipelineCacheDescriptor {
+                        label: Some("raydsl"),
+                        data,
+                        fallback: true,
+                    })
+                }
+            })
+        };
+        // One of another adapter is refused, whatever the name of the file.
+        let cache = make(content(&file)).or_else(|_| make(None))?;
         Ok(Some(Self { path, cache, has_more: AtomicBool::new(false) }))
     }
 
-    /// Returns the driver's cache, for a new pipeline.
+    /// Returns the driver's cache.
     pub(super) fn cache(&self) -> &wgpu::PipelineCache {
-        self.has_more.store(true, Ordering::Relaxed);
         &self.cache
     }
 
-    /// Writes the file, whole or not at all, and returns its bytes; 0 if the driver keeps nothing.
+    /// Notes that the cache has a new pipeline.
+    pub(super) fn note_new(&self) {
+        self.has_more.store(true, Ordering::Relaxed);
+    }
+
+    /// Writes the file, whole or not at all, and returns the bytes of what it keeps.
     pub(super) fn write(&self) -> Result<u64, GpuError> {
         self.has_more.store(false, Ordering::Relaxed);
         let Some(data) = self.cache.get_data() else { return Ok(0) };
-        let written = || {
-            if let Some(folder) = self.path.parent() {
-                fs::create_dir_all(folder)?;
-            }
-            // Another process may write its own meanwhile.
-            let unfinished = self.path.with_extension(std::process::id().to_string());
-            fs::write(&unfinished, file_of(&data))?;
-            fs::rename(&unfinished, &self.path)
-        };
-        written().map_err(|error| failed(&self.path, &error))?;
+        replace(&self.path, &file_of(&data)).map_err(|error| {
+            self.has_more.store(true, Ordering::Relaxed);
+            failed(&self.path, &error)
+        })?;
         Ok(data.len() as u64)
     }
+}
+
+/// Writes a file beside another and puts it in its place.
+fn replace(path: &Path, bytes: &[u8]) -> io::Result<()> {
+    if let Some(folder) = path.parent() {
+        fs::create_dir_all(folder)?;
+    }
+    // Another thread, process or machine may write its own meanwhile.
+    static NUMBER: AtomicU64 = AtomicU64::new(0);
+    let number = NUMBER.fetch_add(1, Ordering::Relaxed);
+    let since = SystemTime::now().duration_since(SystemTime::UNIX_EPOCH).unwrap_or_default();
+    let name = format!("{}-{number}-{}.unfinished", std::process::id(), since.as_nanos());
+    let unfinished = path.with_extension(name);
+    let mut file = fs::OpenOptions::new().write(true).create_new(true).open(&unfinished)?;
+    let written = file.write_all(bytes).and_then(|()| fs::rename(&unfinished, path));
+    if written.is_err() {
+        let _ = fs::remove_file(&unfinished);
+    }
+    written
 }
 
 impl Drop for PipelineFile {

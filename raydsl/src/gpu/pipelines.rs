@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 use std::collections::HashMap;
 use std::sync::atomic::{AtomicU64, Ordering};
-use std::sync::{Arc, Mutex};
+use std::sync::{Arc, Mutex, OnceLock};
 use std::time::Duration;
 
 use super::device::{Gpu, lock};
@@ -28,11 +28,12 @@ impl PipelineSource<'_> {
     }
 }
 
-/// A pipeline, once it is compiled. Who compiles it holds the lock: others wait for it, and for no
-/// other pipeline.
+/// A pipeline, once it is compiled.
 struct Entry {
     bindings: Bindings,
-    made: Mutex<Option<Pipeline>>,
+    made: OnceLock<Pipeline>,
+    /// Held by who compiles it: others wait for it, and for no other pipeline.
+    compiling: Mutex<()>,
 }
 
 /// The pipelines compiled so far.
@@ -72,12 +73,7 @@ impl Pipelines {
     /// Returns whether a pipeline is compiled.
     #[cfg(not(target_family = "wasm"))]
     pub(super) fn has(&self, source: &PipelineSource<'_>) -> bool {
-        let Some(entry) = known(&lock(&self.by_text), source) else { return false };
-        match entry.made.try_lock() {
-            Ok(made) => made.is_some(),
-            Err(std::sync::TryLockError::Poisoned(made)) => made.into_inner().is_some(),
-            Err(std::sync::TryLockError::WouldBlock) => false,
-        }
+        known(&lock(&self.by_text), source).is_some_and(|entry| entry.made.get().is_some())
     }
 
     /// Returns a pipeline, compiled if it is new.
@@ -88,8 +84,11 @@ impl Pipelines {
         source: &PipelineSource<'_>,
     ) -> Result<Pipeline, GpuError> {
         let entry = self.entry(source);
-        let mut made = lock(&entry.made);
-        if let Some(pipeline) = &*made {
+        if let Some(pipeline) = entry.made.get() {
+            return Ok(pipeline.clone());
+        }
+        let _compiling = lock(&entry.compiling);
+        if let Some(pipeline) = entry.made.get() {
             return Ok(pipeline.clone());
         }
         let start = Instant::now();
@@ -97,8 +96,11 @@ impl Pipelines {
         let took = u64::try_from(start.elapsed().as_nanos()).unwrap_or(u64::MAX);
         self.compile_ns.fetch_add(took, Ordering::Relaxed);
         self.compiled.fetch_add(1, Ordering::Relaxed);
-        *made = Some(pipeline.clone());
-        Ok(pipeline)
+        #[cfg(not(target_family = "wasm"))]
+        if let Some(file) = &self.file {
+            file.note_new();
+        }
+        Ok(entry.made.get_or_init(|| pipeline).clone())
     }
 
     fn cache(&self) -> Option<&wgpu::PipelineCache> {
@@ -113,7 +115,11 @@ impl Pipelines {
         if let Some(entry) = known(&by_text, source) {
             return entry;
         }
-        let entry = Entry { bindings: source.bindings.clone(), made: Mutex::default() };
+        let entry = Entry {
+            bindings: source.bindings.clone(),
+            made: OnceLock::new(),
+            compiling: Mutex::default(),
+        };
         let entry = Arc::new(entry);
         by_text.entry(source.text.to_string()).or_default().push(Arc::clone(&entry));
         entry

@@ -7,8 +7,10 @@ use std::sync::Arc;
 use std::time::Duration;
 
 #[cfg(not(target_family = "wasm"))]
-use super::background::{Background, Compiled, Handover};
+use super::background::Background;
 use super::device::lock;
+#[cfg(not(target_family = "wasm"))]
+use super::meanwhile::Meanwhile;
 use super::run::{Grid, Outputs, Teller};
 use super::window::check_target;
 use super::{Context, GpuError, GpuWindow, Timing};
@@ -24,7 +26,7 @@ use crate::render::{
     recorded, timing_of,
 };
 #[cfg(not(target_family = "wasm"))]
-use crate::render::{Pace, Renderer, Scheduler, TiledScheduler};
+use crate::render::{Pace, Renderer, TiledScheduler};
 
 /// A visitor of the buffers that a kernel may read.
 type Visit<'a> = &'a mut dyn FnMut(&dyn Resource);
@@ -89,11 +91,12 @@ impl GpuScheduler {
     /// the CPU's variants are compiled with the program, for every scene.
     ///
     /// A kernel that is new to the device is compiled on a thread of its own. Until that ends, frames,
-    /// passes over films and batches are the host's; a long one is handed over when it ends. The bits
-    /// are the same where the device is [exact](Context::is_exact); elsewhere those of the two
-    /// variants mix. [`Timing::dispatches`] is 0 where the host did all of the work, and
-    /// [`Timing::device_ms`] is `None`. [`GpuScheduler::frame_into`] and the `async` functions wait for
-    /// the device.
+    /// passes over films and batches are the host's. Of a batch the device does the rest; of a frame or
+    /// a pass all, if the host has done less than half. The bits are the same where the device is
+    /// [exact](Context::is_exact) and the kernel's arithmetic is not `Fast`; elsewhere those of two
+    /// variants mix: leave it out where variants are compared. [`Timing::dispatches`] is 0 where the
+    /// host did all of the work. [`GpuScheduler::frame_into`] and the `async` functions wait for the
+    /// device. An error of the compilation comes with the next call; a batch may then have some results.
     ///
     /// ```no_run
     /// # use raydsl::prelude::*;
@@ -122,8 +125,16 @@ impl GpuScheduler {
         camera: &C,
         kernel: &Kernel<'_, A, R>,
     ) -> Result<bool, GpuError> {
-        let module = self.module(&Frame { rays: camera.begin_frame(1, 1), kernel });
-        Ok(matches!(self.background.state(&self.context, &module)?, Compiled::Ready))
+        let shot = Frame { rays: camera.begin_frame(1, 1), kernel };
+        Ok(self.background.pending(&self.context, &|| self.module(&shot))?.is_none())
+    }
+
+    /// Returns who renders until a module is compiled; nothing if it is, or nobody does.
+    #[cfg(not(target_family = "wasm"))]
+    fn meanwhile(&self, module: &dyn Fn() -> Module) -> Result<Option<Meanwhile<'_>>, GpuError> {
+        let Some(host) = &self.host else { return Ok(None) };
+        let pending = self.background.pending(&self.context, module)?;
+        Ok(pending.map(|compiled| Meanwhile::new(host, compiled)))
     }
 
     /// Returns the device with its caches.
@@ -409,15 +420,28 @@ impl Renderer for GpuScheduler {
         image: &mut Image<S::Output>,
         mut observer: Option<Observer<'_>>,
     ) -> Result<ControlFlow<Timing, Timing>, GpuError> {
-        if let Some(host) = &self.host
-            && let Compiled::Running(end) =
-                self.background.state(&self.context, &self.module(shot))?
-            && let Some(end) =
-                shoot_on(host, shot, effort, image, &mut observer, Handover::new(end))
-        {
+        let Some(meanwhile) = self.meanwhile(&|| self.module(shot))? else {
+            return pollster::block_on(self.shoot_async(shot, effort, image, observer));
+        };
+        // When the device begins anew, shares do not fall.
+        let mut told = 0.0f64;
+        let mut rising = |share: f64| {
+            told = told.max(share);
+            observer.as_mut().map_or(ControlFlow::Continue(()), |observer| observer(told))
+        };
+        if let Some(end) = meanwhile.shoot(shot, effort, image, &mut rising) {
             return Ok(end);
         }
-        pollster::block_on(self.shoot_async(shot, effort, image, observer))
+        let mut before = meanwhile.timing();
+        let end = pollster::block_on(self.shoot_async(shot, effort, image, Some(&mut rising)))?;
+        let mut whole = |timing| {
+            before += timing;
+            before
+        };
+        Ok(match end {
+            ControlFlow::Continue(timing) => ControlFlow::Continue(whole(timing)),
+            ControlFlow::Break(timing) => ControlFlow::Break(whole(timing)),
+        })
     }
 
     fn pace(&self, budget: Duration) -> Pace {
@@ -430,21 +454,13 @@ impl Renderer for GpuScheduler {
         inputs: &[A],
         outputs: &mut [R],
     ) -> Result<Timing, GpuError> {
-        let mut done = 0;
-        let mut timing = Timing::default();
-        if let Some(host) = &self.host
-            && inputs.len() == outputs.len()
-            && let Compiled::Running(end) =
-                self.background.state(&self.context, &self.batch_module(kernel))?
-        {
-            let handover = Handover::new(end);
-            while done < inputs.len() && (done == 0 || !handover.is_due(share(done, inputs.len())))
-            {
-                let end = inputs.len().min(done + BATCH);
-                host.run_batch(kernel, &inputs[done..end], &mut outputs[done..end]);
-                done = end;
-            }
-            timing.wall_ms = handover.wall_ms();
+        if inputs.len() != outputs.len() {
+            return pollster::block_on(self.batch_async(kernel, inputs, outputs));
+        }
+        let (mut done, mut timing) = (0, Timing::default());
+        if let Some(meanwhile) = self.meanwhile(&|| self.batch_module(kernel))? {
+            done = meanwhile.batch(kernel, inputs, outputs);
+            timing = meanwhile.timing();
             if done == inputs.len() {
                 return Ok(timing);
             }
@@ -452,47 +468,6 @@ impl Renderer for GpuScheduler {
         timing +=
             pollster::block_on(self.batch_async(kernel, &inputs[done..], &mut outputs[done..]))?;
         Ok(timing)
-    }
-}
-
-/// Elements of a batch that the host does before it asks whether the device can go on.
-#[cfg(not(target_family = "wasm"))]
-const BATCH: usize = 1 << 16;
-
-#[cfg(not(target_family = "wasm"))]
-fn share(done: usize, all: usize) -> f64 {
-    done as f64 / all as f64
-}
-
-/// Renders on the host, and returns nothing if the device has to take over; `image` has the result only
-/// when it is complete.
-#[cfg(not(target_family = "wasm"))]
-fn shoot_on<S: Shot>(
-    host: &TiledScheduler,
-    shot: &S,
-    effort: Effort,
-    image: &mut Image<S::Output>,
-    observer: &mut Option<Observer<'_>>,
-    handover: Handover,
-) -> Option<ControlFlow<Timing, Timing>> {
-    let mut made = image.clone();
-    let mut is_handed_over = false;
-    let mut watch = |share| {
-        is_handed_over = handover.is_due(share);
-        if is_handed_over {
-            return ControlFlow::Break(());
-        }
-        observer.as_mut().map_or(ControlFlow::Continue(()), |observer| observer(share))
-    };
-    let Ok(end) = host.shoot(shot, effort, &mut made, Some(&mut watch));
-    let timing = Timing { wall_ms: handover.wall_ms(), ..Timing::default() };
-    match end {
-        ControlFlow::Continue(()) => {
-            *image = made;
-            Some(ControlFlow::Continue(timing))
-        }
-        ControlFlow::Break(()) if is_handed_over => None,
-        ControlFlow::Break(()) => Some(ControlFlow::Break(timing)),
     }
 }
 

@@ -67,7 +67,7 @@ impl Worker<'_> {
         let other = matches!(look.show, Show::Difference(_)).then(|| Film::new(width, height));
         let mut films = (Film::new(width, height), other);
         let (mut share, patience) = (0.0, budget * (2 << self.late.min(5)));
-        let is_complete = self.add(kernel, look, &mut films, 1, &mut |made| {
+        let is_complete = self.add(kernel, job, &mut films, 1, &mut |made| {
             share = made;
             let is_late = link.is_outdated(job.number) && start.elapsed() > patience;
             if is_late || link.is_closed() {

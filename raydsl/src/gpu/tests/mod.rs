@@ -2,6 +2,7 @@
 
 mod application;
 mod awaited;
+mod background;
 mod failures;
 mod grid;
 mod kernels;
