@@ -21,6 +21,7 @@ pub mod queries;
 pub mod rng;
 pub mod run_time;
 pub mod scenes;
+pub mod transport;
 pub mod values;
 
 /// How many rays a heavy test takes: `full`, or a share of it that the environment variable

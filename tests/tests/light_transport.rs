@@ -7,56 +7,22 @@
 use std::error::Error;
 use std::f32::consts::PI;
 
-use raydsl::bsdf::{Bsdf, BsdfSample, Lambert, Material, NO_LIGHT, ThinDielectric};
-use raydsl::geometry::Aabb;
+use raydsl::bsdf::{Bsdf, BsdfSample, Lambert, Material, ThinDielectric};
 use raydsl::integrators::{
     LightSampling, PathLimits, PathOptions, next_3d, path, path_with, volume_path, whitted,
 };
 use raydsl::light::{
-    AnyLight, AreaLight, DirectionalLight, DiskShape, Environment, LightShape, Lights, PointLight,
-    RectangleShape, SphereShape, SpotLight,
+    AnyLight, DirectionalLight, DiskShape, Environment, Lights, PointLight, RectangleShape,
+    SphereShape, SpotLight,
 };
 use raydsl::prelude::*;
-use raydsl::shading::Surface;
 use raydsl::testing::{FilmTest, can_run, run};
-use raydsl::volume::{
-    Collision, ExactCell, Grid, GridConfig, GridError, TransferError, TransferFunction, Volume,
-    VolumeLight, collision, ratio_transmittance,
-};
+use raydsl::volume::{Collision, ExactCell, Volume, VolumeLight, collision, ratio_transmittance};
 use raydsl::{Type, assert_variants_agree, kernel};
 use raydsl_tests::scaled;
-
-#[primitive(sphere(center, radius))]
-struct Ball {
-    center: Vec3,
-    radius: f32,
-}
-
-#[primitive(disk(center, normal, radius))]
-struct Plate {
-    center: Vec3,
-    normal: Vec3,
-    radius: f32,
-}
-
-macro_rules! surfaces {
-    ($($t:ident),+) => {
-        $(
-            #[kernel]
-            impl Surface for $t {
-                fn surface(&self, ray: Ray, hit: Hit) -> SurfacePoint {
-                    self.surface_point(ray, hit)
-                }
-
-                fn albedo(&self, _ray: Ray, _hit: Hit) -> Vec3 {
-                    Vec3::ONE
-                }
-            }
-        )+
-    };
-}
-
-surfaces!(Ball, Plate);
+use raydsl_tests::transport::{
+    BALL, Ball, Dome, FLOOR, Paint, Plate, area, cube, medium, murk, paint, shining_sphere,
+};
 
 /// A mean and its standard error.
 fn mean(values: &[f32]) -> (f64, f64) {
@@ -103,14 +69,6 @@ fn assert_irradiance(name: &str, lights: &Lights<'_, AnyLight>, exact: f64) {
         if s.pdf > 0.0 { s.light.x * max(s.wi.z, 0.0) / s.pdf } else { 0.0 }
     });
     assert_mean(name, &kernel, exact);
-}
-
-fn cube() -> Aabb {
-    Aabb { min: Vec3::splat(-2.0), max: Vec3::splat(2.0) }
-}
-
-fn area<S: LightShape + Type>(shape: S, radiance: f32, is_two_sided: bool) -> AreaLight<S> {
-    AreaLight::<S> { shape, radiance: Vec3::splat(radiance), is_two_sided }
 }
 
 /// P-D1, P-D2, P-D3, P-D6: irradiance from a sphere, a square, a triangle, an overcast sky; and from
@@ -184,59 +142,6 @@ fn point_light_over_a_square() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// A dome, and a floor under it.
-#[derive(Scene)]
-struct Dome<'a> {
-    dome: &'a [Ball],
-    floor: &'a [Plate],
-}
-
-const BALL: [Ball; 1] = [Ball { center: Vec3::ZERO, radius: 1.0 }];
-const FLOOR: [Plate; 1] = [Plate { center: Vec3::ZERO, normal: Vec3::Z, radius: 1.0 }];
-
-/// Paint that is half a mirror, and lets a part of the light pass; samples of its diffuse part are
-/// uniform, so that their weights are up to twice their mean.
-#[derive(Clone, Copy, Type)]
-struct Paint {
-    albedo: f32,
-    mirrored: f32,
-    light: u32,
-    opacity: f32,
-}
-
-#[kernel]
-impl Bsdf for Paint {
-    fn eval(&self, wo: Vec3, wi: Vec3) -> Vec3 {
-        let diffuse = self.albedo * (1.0 - self.mirrored) * wi.z.abs() / PI;
-        Vec3::splat(if wo.z * wi.z > 0.0 { diffuse } else { 0.0 })
-    }
-
-    fn sample(&self, wo: Vec3, u: Vec3) -> BsdfSample {
-        if u.z < self.mirrored {
-            let mirrored = vec3(-wo.x, -wo.y, wo.z);
-            return BsdfSample::delta(mirrored, Vec3::splat(self.albedo), self.mirrored);
-        }
-        let up = sample_uniform_hemisphere(vec2(u.x, u.y));
-        let wi = vec3(up.x, up.y, if wo.z < 0.0 { -up.z } else { up.z });
-        BsdfSample::of(wi, Paint::eval(self, wo, wi), Paint::pdf(self, wo, wi))
-    }
-
-    fn pdf(&self, wo: Vec3, wi: Vec3) -> f32 {
-        if wo.z * wi.z > 0.0 { (1.0 - self.mirrored) * (0.5 / PI) } else { 0.0 }
-    }
-}
-
-#[kernel]
-impl Material for Paint {
-    fn light(&self) -> u32 {
-        self.light
-    }
-
-    fn opacity(&self) -> f32 {
-        self.opacity
-    }
-}
-
 /// What is known of the light along a ray.
 #[derive(Clone, Copy)]
 struct Known<'a> {
@@ -272,14 +177,6 @@ fn assert_known(name: &str, known: &Known<'_>) {
         });
         assert_mean(&format!("{name}, roulette {roulette}, {options:?}"), &kernel, exact);
     }
-}
-
-fn paint(albedo: f32) -> Paint {
-    Paint { albedo, mirrored: 0.0, light: NO_LIGHT, opacity: 1.0 }
-}
-
-fn shining_sphere(emission: f32) -> AnyLight {
-    AnyLight::Sphere(area(SphereShape { center: Vec3::ZERO, radius: 1.0 }, emission, true))
 }
 
 /// P-GI1 to P-GI5: a convex body in a white furnace, of albedo 0.75, and of albedo 1, which is not
@@ -438,16 +335,6 @@ struct InMedium<'a> {
 
 /// Its direction is three units long.
 const MEDIUM_RAY: Ray = Ray::new(vec3(0.1, 0.2, 0.0), vec3(0.0, 1.8, 2.4));
-
-/// Voxels around the dome; 0 is an extinction of 0.2, and 1 of 3.
-fn medium(voxels: &[f32]) -> Result<Grid<'_, f32>, GridError> {
-    Grid::new(voxels, uvec3(3, 3, 3), GridConfig::new().origin(Vec3::splat(-1.0)))
-}
-
-fn murk(albedo: f32) -> Result<TransferFunction, TransferError> {
-    let color = Vec3::splat(albedo);
-    TransferFunction::from_extinction(&[(0.0, color)], &[(0.0, 0.2), (1.0, 3.0)])
-}
 
 #[track_caller]
 fn assert_in_medium(case: &InMedium<'_>, voxels: &[f32]) -> Result<(), Box<dyn Error>> {
