@@ -27,7 +27,7 @@ pub(crate) struct Verdict {
     pub(crate) fate: Fate,
     /// The program and tests that killed it.
     pub(crate) by: String,
-    /// The number of tests that reach it.
+    /// The number of tests that were to be run.
     pub(crate) tests: usize,
 }
 
@@ -123,20 +123,30 @@ fn batches(tests: &[Test], mutant: usize) -> Vec<Batch<'_>> {
     done
 }
 
-/// Runs the tests on each of these mutants that has no verdict yet, or that survived if `again`.
-pub(crate) fn run(folder: &Folder, before: &[String], jobs: usize, wanted: &[usize], again: bool) {
+/// Which mutants to run, and how long.
+pub(crate) struct Plan {
+    pub(crate) wanted: Vec<usize>,
+    /// Also those that survived.
+    pub(crate) again: bool,
+    /// The most seconds that the tests of a mutant take without it.
+    pub(crate) within: f64,
+}
+
+/// Runs the tests on each of these mutants that has no verdict yet.
+pub(crate) fn run(folder: &Folder, before: &[String], jobs: usize, plan: &Plan) {
+    let Plan { wanted, again, within } = plan;
     let runner = Runner::new(folder, before);
     let tests: Vec<Test> = folder.lines(TESTS);
     let verdicts = verdicts(folder);
     let is_open = |i: &usize| match verdicts.get(i) {
         None => true,
-        Some(v) => again && matches!(v.fate, Fate::Survived | Fate::Unreached),
+        Some(v) => *again && matches!(v.fate, Fate::Survived | Fate::Unreached),
     };
     let all = mutants(folder);
     let open: Vec<usize> =
         wanted.iter().copied().filter(|i| *i < all.len()).filter(is_open).collect();
     in_parallel(&open, jobs, |&mutant| {
-        let verdict = judge(&runner, &tests, mutant);
+        let verdict = judge(&runner, &tests, mutant, *within);
         let site = &all[mutant].site;
         let what = format!("{}:{} {}", site.file, site.line, site.change);
         println!("{mutant:3} {what}: {:?} {}", verdict.fate, verdict.by);
@@ -144,8 +154,13 @@ pub(crate) fn run(folder: &Folder, before: &[String], jobs: usize, wanted: &[usi
     });
 }
 
-fn judge(runner: &Runner, tests: &[Test], mutant: usize) -> Verdict {
-    let batches = batches(tests, mutant);
+fn judge(runner: &Runner, tests: &[Test], mutant: usize, within: f64) -> Verdict {
+    let mut batches = batches(tests, mutant);
+    let mut seconds = 0.0;
+    batches.retain(|b| {
+        seconds += b.seconds;
+        seconds <= within
+    });
     let count = batches.iter().map(|b| b.names.len()).sum();
     let none = if count == 0 { Fate::Unreached } else { Fate::Survived };
     for batch in &batches {

@@ -19,6 +19,7 @@ use std::path::{Path, PathBuf};
 
 use clap::{Parser, Subcommand};
 
+use campaign::Plan;
 use folder::Folder;
 
 #[derive(Parser)]
@@ -62,6 +63,9 @@ enum Task {
         /// Also those that survived.
         #[arg(long)]
         again: bool,
+        /// The most seconds that the tests of a mutant take without it, the quick ones first.
+        #[arg(long, default_value_t = f64::INFINITY)]
+        within: f64,
     },
     /// Prints the tables.
     Table,
@@ -77,8 +81,9 @@ fn main() {
         Task::Reach { programs } => {
             campaign::reach(&folder, &options.before, options.jobs, &programs);
         }
-        Task::Run { mutants, again } => {
-            campaign::run(&folder, &options.before, options.jobs, &wanted(&mutants), again);
+        Task::Run { mutants, again, within } => {
+            let plan = Plan { wanted: wanted(&mutants), again, within };
+            campaign::run(&folder, &options.before, options.jobs, &plan);
         }
         Task::Table => table::print(&folder),
     }

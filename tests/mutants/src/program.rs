@@ -1,6 +1,7 @@
 //! Test programs of the copy, run with one mutant active.
 
 use std::collections::BTreeMap;
+use std::os::unix::process::ExitStatusExt;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
@@ -75,8 +76,9 @@ impl Runner {
         let end = match out.status.code() {
             Some(0) => End::Passed,
             Some(101) => End::Failed,
-            // Of `timeout`, which is killed with what it kills.
+            // `timeout` is killed by the signal that it sends.
             Some(124 | 137) => End::Late,
+            None if out.status.signal() == Some(9) => End::Late,
             _ => End::Crashed,
         };
         let seconds =

@@ -30,16 +30,19 @@ pub(crate) const ROOMS: [Room; 5] = [
 ];
 
 /// The programs of `tests/tests` that concern the rooms, beside the library's unit tests.
-pub(crate) const PROGRAMS: [&str; 28] = [
+pub(crate) const PROGRAMS: [&str; 31] = [
     "accelerators",
     "adversary",
     "analytic",
     "any_scene",
+    "attributes",
     "boxes",
     "cells",
     "closures",
     "contract",
     "edges",
+    "facts",
+    "flow",
     "gangs",
     "hits",
     "instances",

@@ -52,6 +52,23 @@ fn no_label_is_between_two_others() {
     assert_close(&kernel, &inputs, 2e-2);
 }
 
+/// Within a label nothing has a gradient, so nothing is shaded.
+#[test]
+fn only_borders_are_shaded() {
+    let size = uvec3(6, 6, 6);
+    let voxels = vec![2.0; 216];
+    let grid = Grid::new(&voxels[..], size, GridConfig::new()).expect("a grid");
+    let volume = Volume::new(&grid, organs());
+    let plain = Labels::new(0.2);
+    let lit = plain.lit(vec3(0.0, 0.6, 0.8), 0.25);
+    let ray = Ray::new(vec3(3.2, 2.9, -4.0), Vec3::Z);
+    let kernel = kernel!(|ray: Ray| volume.integrate(&lit, ray, VolumeLight::new()).rgba());
+    let found = kernel.call((ray,));
+    assert!(found.x > 0.3, "{found}");
+    assert_eq!(found, volume.integrate(&plain, ray, VolumeLight::new()).rgba());
+    assert_close(&kernel, &[(ray,)], 1e-4);
+}
+
 #[test]
 fn labels_are_values_within_a_half() {
     let organs = organs();

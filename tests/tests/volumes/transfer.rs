@@ -91,3 +91,18 @@ fn the_mean_of_one_value_is_it() {
     assert_eq!(ramp.between(0.0, 1.0).extinction, 1.0);
     assert_eq!(ramp.between(0.0, 2.0).extinction, 2.0);
 }
+
+/// Beyond its knots a function has the values of its ends, however far.
+#[test]
+fn far_values_are_those_of_the_ends() {
+    let ramp = [(0.0, 0.5), (1.0, 2.0), (1.0, 3.0)];
+    let ramp = TransferFunction::from_extinction(&[(0.0, Vec3::X)], &ramp).expect("a function");
+    for far in [7.0, 1e30, f32::MAX, f32::INFINITY] {
+        assert_eq!((ramp.at(far).extinction, ramp.at(-far).extinction), (3.0, 0.5), "{far}");
+    }
+    let kernel = kernel!(|value: f32| {
+        let sample = ramp.at(value);
+        vec4(sample.color.x, sample.color.y, sample.color.z, sample.extinction)
+    });
+    assert_close(&kernel, &[(7.0,), (-7.0,), (1e30,), (-1e30,)], 1e-6);
+}

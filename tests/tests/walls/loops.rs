@@ -91,3 +91,22 @@ fn patterns_in_heads() {
     let kernel = kernel!(|x: f32, y: f32| patterns(&of, &spans, &points, x, y));
     assert_variants_agree!(&kernel, &pairs());
 }
+
+/// A loop on a condition of the host runs until it is left, or not at all.
+#[test]
+fn loops_of_host_conditions() {
+    for is_on in [false, true] {
+        let kernel = kernel!(|x: f32| {
+            let mut sum = x;
+            while is_on {
+                sum += 1.5;
+                if sum > 9.0 {
+                    break;
+                }
+            }
+            sum
+        });
+        assert_eq!(kernel.call((2.0,)), if is_on { 9.5 } else { 2.0 });
+        assert_variants_agree!(&kernel, &[(2.0,), (0.5,), (20.0,)]);
+    }
+}
