@@ -26,6 +26,12 @@ struct Ball {
     radius: f32,
 }
 
+#[primitive(cuboid(min, max))]
+struct Chest {
+    min: Vec3,
+    max: Vec3,
+}
+
 #[primitive(plane(normal, offset))]
 #[derive(Debug)]
 struct Floor {
@@ -47,8 +53,12 @@ fn trees_say_what_they_are() -> Result<(), Box<dyn Error>> {
     let ball = |i: u16| Ball { center: Vec3::X * f32::from(i), radius: 0.4 };
     let balls: Vec<Ball> = (0..20).map(ball).collect();
     let binary = Bvh::build(&balls)?;
-    let wide = Bvh::build_wide(&balls, &[], &BuildConfig::default())?;
-    assert!(!binary.is_wide() && wide.is_wide());
+    let wide = |min_wide_size| {
+        Bvh::build_wide(&balls, &[], &BuildConfig { min_wide_size, ..BuildConfig::default() })
+    };
+    let (small, wide) = (wide(21)?, wide(20)?);
+    assert!(!binary.is_wide() && !small.is_wide());
+    assert_eq!(wide.is_wide(), raydsl::testing::can_run(Variant::Packet8, "wide trees"));
     let none = Bvh::build(&balls[..0])?;
     for (tree, count) in [(binary, 20), (wide, 20), (none, 0)] {
         let detached = tree.detach();
@@ -167,4 +177,18 @@ fn points_of_cylinders_are_within_their_error() {
     }
     assert!(hits > 1000, "{hits}");
     assert!(worst > 0.01, "{worst}");
+}
+
+/// A sampled point of a box is on a face, and says an error of few roundings.
+#[test]
+fn samples_of_boxes_are_on_their_faces() {
+    let chest = Chest { min: vec3(-1.0, 2.0, 0.5), max: vec3(2.0, 2.5, 4.0) };
+    let mut rng = Rng::of("boxes");
+    for _ in 0..2000 {
+        let point = chest.sample(vec2(rng.unit(), rng.unit()));
+        let p = point.position;
+        let to_face = (p - chest.min).abs().min((p - chest.max).abs()).min_element();
+        assert!(to_face <= point.error && point.error < 1e-5, "{point:?}");
+        assert!(p.cmpge(chest.min - 1e-6).all() && p.cmple(chest.max + 1e-6).all());
+    }
 }

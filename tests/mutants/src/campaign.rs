@@ -31,6 +31,12 @@ pub(crate) struct Verdict {
     pub(crate) tests: usize,
 }
 
+impl Verdict {
+    pub(crate) fn is_alive(&self) -> bool {
+        matches!(self.fate, Fate::Survived | Fate::Unreached)
+    }
+}
+
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub(crate) enum Fate {
     /// A test failed.
@@ -130,17 +136,20 @@ pub(crate) struct Plan {
     pub(crate) again: bool,
     /// The most seconds that the tests of a mutant take without it.
     pub(crate) within: f64,
+    /// Only tests of these programs; of all if there are none.
+    pub(crate) programs: Vec<String>,
 }
 
 /// Runs the tests on each of these mutants that has no verdict yet.
 pub(crate) fn run(folder: &Folder, before: &[String], jobs: usize, plan: &Plan) {
-    let Plan { wanted, again, within } = plan;
+    let Plan { wanted, again, within, programs } = plan;
     let runner = Runner::new(folder, before);
-    let tests: Vec<Test> = folder.lines(TESTS);
+    let mut tests: Vec<Test> = folder.lines(TESTS);
+    tests.retain(|t| programs.is_empty() || programs.contains(&t.program));
     let verdicts = verdicts(folder);
     let is_open = |i: &usize| match verdicts.get(i) {
         None => true,
-        Some(v) => *again && matches!(v.fate, Fate::Survived | Fate::Unreached),
+        Some(v) => *again && v.is_alive(),
     };
     let all = mutants(folder);
     let open: Vec<usize> =
@@ -150,7 +159,10 @@ pub(crate) fn run(folder: &Folder, before: &[String], jobs: usize, plan: &Plan) 
         let site = &all[mutant].site;
         let what = format!("{}:{} {}", site.file, site.line, site.change);
         println!("{mutant:3} {what}: {:?} {}", verdict.fate, verdict.by);
-        folder.append(VERDICTS, &verdict);
+        // One that survives some tests more is as it was.
+        if programs.is_empty() || !verdict.is_alive() {
+            folder.append(VERDICTS, &verdict);
+        }
     });
 }
 

@@ -66,6 +66,9 @@ enum Task {
         /// The most seconds that the tests of a mutant take without it, the quick ones first.
         #[arg(long, default_value_t = f64::INFINITY)]
         within: f64,
+        /// Only tests of these programs, such as those that were changed.
+        #[arg(long, value_delimiter = ',')]
+        programs: Vec<String>,
     },
     /// Prints the tables.
     Table,
@@ -81,8 +84,8 @@ fn main() {
         Task::Reach { programs } => {
             campaign::reach(&folder, &options.before, options.jobs, &programs);
         }
-        Task::Run { mutants, again, within } => {
-            let plan = Plan { wanted: wanted(&mutants), again, within };
+        Task::Run { mutants, again, within, programs } => {
+            let plan = Plan { wanted: wanted(&mutants), again, within, programs };
             campaign::run(&folder, &options.before, options.jobs, &plan);
         }
         Task::Table => table::print(&folder),

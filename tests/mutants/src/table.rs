@@ -25,7 +25,7 @@ pub(crate) fn print(folder: &Folder) {
         println!("| {} | {} |", room.unwrap_or("all"), cells.join(" | "));
     }
     println!();
-    for v in verdicts.values().filter(|v| matches!(v.fate, Fate::Survived | Fate::Unreached)) {
+    for v in verdicts.values().filter(|v| v.is_alive()) {
         let site = &mutants[v.mutant].site;
         let what = if v.fate == Fate::Survived {
             format!("{} tests", v.tests)
