@@ -19,7 +19,9 @@ static ACTIVE: AtomicU32 = AtomicU32::new(UNREAD);
 static REACHED: [AtomicBool; MOST] = [const { AtomicBool::new(false) }; MOST];
 static FILE: LazyLock<Mutex<Option<File>>> = LazyLock::new(|| {
     let name = std::env::var("RAYDSL_MUTANT").unwrap_or_default();
-    let open = |name: &str| File::options().append(true).create(true).open(name).expect("a file to write to");
+    let open = |name: &str| {
+        File::options().append(true).create(true).open(name).expect("a file to write to")
+    };
     Mutex::new(name.strip_prefix("seen:").map(open))
 });
 

@@ -4,6 +4,8 @@ use std::error::Error;
 
 use glam::DVec3;
 use raydsl::prelude::*;
+use raydsl::volume::{Grid, GridConfig};
+use raydsl::{assert_variants_agree, kernel};
 use raydsl_tests::rng::Rng;
 
 #[primitive(cylinder(p0, p1, radius))]
@@ -191,4 +193,20 @@ fn samples_of_boxes_are_on_their_faces() {
         assert!(to_face <= point.error && point.error < 1e-5, "{point:?}");
         assert!(p.cmpge(chest.min - 1e-6).all() && p.cmple(chest.max + 1e-6).all());
     }
+}
+
+/// Two grids of one placement and other values are two buffers of a device.
+#[test]
+fn grids_of_one_layout_are_told_apart() {
+    let size = uvec3(3, 4, 5);
+    let values = |f: fn(f32) -> f32| (0..60u8).map(|i| f(f32::from(i))).collect::<Vec<f32>>();
+    let (rising, falling) = (values(|i| i * 0.5), values(|i| 9.0 - i * i * 0.01));
+    let first = Grid::new(rising, size, GridConfig::new()).expect("a grid");
+    let second = Grid::new(falling, size, GridConfig::new()).expect("a grid");
+    let kernel = kernel!(|p: Vec3| first.value(p) * 3.0 - second.value(p));
+    let mut rng = Rng::of("grids");
+    let inputs: Vec<(Vec3,)> = (0..100).map(|_| (rng.point(1.0) + 1.0,)).collect();
+    assert_variants_agree!(&kernel, &inputs);
+    let off = |p: Vec3| (kernel.call((p,)) - (first.value(p) * 3.0 - second.value(p))).abs();
+    assert!(inputs.iter().all(|(p,)| off(*p) < 1e-5));
 }
