@@ -94,6 +94,7 @@ fn patterns_in_heads() {
 
 /// A loop on a condition of the host runs until it is left, or not at all.
 #[test]
+#[expect(clippy::while_immutable_condition, reason = "the host decides it once")]
 fn loops_of_host_conditions() {
     for is_on in [false, true] {
         let kernel = kernel!(|x: f32| {
