@@ -66,16 +66,19 @@ const TOGETHER: f64 = 2.0;
 /// Runs every test once without a mutant, and writes down the mutants that it reaches.
 pub(crate) fn reach(folder: &Folder, before: &[String], jobs: usize, only: &[String]) {
     let runner = Runner::new(folder, before);
-    let known: BTreeSet<(String, String)> =
-        folder.lines::<Test>(TESTS).into_iter().map(|t| (t.program, t.name)).collect();
-    let mut tests = Vec::new();
+    // Programs that are named may have changed.
+    let known: BTreeSet<(String, String)> = match only {
+        [] => tests(folder).into_iter().map(|t| (t.program, t.name)).collect(),
+        _ => BTreeSet::new(),
+    };
+    let mut wanted = Vec::new();
     let is_wanted = |p: &&str| only.is_empty() || only.iter().any(|o| o == p);
     for program in runner.programs().filter(is_wanted) {
         let names = runner.tests(program).into_iter().map(|n| (program.to_owned(), n));
         let names = names.filter(|(_, n)| !OF_TEXT.iter().any(|text| n.contains(text)));
-        tests.extend(names.filter(|test| !known.contains(test)).enumerate());
+        wanted.extend(names.filter(|test| !known.contains(test)).enumerate());
     }
-    in_parallel(&tests, jobs, |(i, (program, name))| {
+    in_parallel(&wanted, jobs, |(i, (program, name))| {
         let file = folder.path(&format!("reached-{program}-{i}"));
         let outcome = runner.run(program, &[name], &format!("seen:{}", file.display()), LONGEST);
         let passes = outcome.end == End::Passed;
@@ -88,7 +91,7 @@ pub(crate) fn reach(folder: &Folder, before: &[String], jobs: usize, only: &[Str
         let (program, name) = (program.clone(), name.clone());
         folder.append(TESTS, &Test { program, name, passes, seconds, reached });
     });
-    let tests: Vec<Test> = folder.lines(TESTS);
+    let tests = tests(folder);
     let seconds: f64 = tests.iter().map(|t| t.seconds).sum();
     let passing = tests.iter().filter(|t| t.passes).count();
     let reached: BTreeSet<usize> = tests.iter().flat_map(|t| &t.reached).copied().collect();
@@ -98,6 +101,13 @@ pub(crate) fn reach(folder: &Folder, before: &[String], jobs: usize, only: &[Str
         reached.len(),
         mutants(folder).len()
     );
+}
+
+/// Returns what was last found out of each test.
+fn tests(folder: &Folder) -> Vec<Test> {
+    let all = folder.lines::<Test>(TESTS).into_iter();
+    let last: BTreeMap<_, _> = all.map(|t| ((t.program.clone(), t.name.clone()), t)).collect();
+    last.into_values().collect()
 }
 
 /// Tests of one program that are run together.
@@ -144,7 +154,7 @@ pub(crate) struct Plan {
 pub(crate) fn run(folder: &Folder, before: &[String], jobs: usize, plan: &Plan) {
     let Plan { wanted, again, within, programs } = plan;
     let runner = Runner::new(folder, before);
-    let mut tests: Vec<Test> = folder.lines(TESTS);
+    let mut tests = tests(folder);
     tests.retain(|t| programs.is_empty() || programs.contains(&t.program));
     let verdicts = verdicts(folder);
     let is_open = |i: &usize| match verdicts.get(i) {
@@ -166,6 +176,7 @@ pub(crate) fn run(folder: &Folder, before: &[String], jobs: usize, plan: &Plan) 
     });
 }
 
+/// Runs the tests that reach a mutant until one fails.
 fn judge(runner: &Runner, tests: &[Test], mutant: usize, within: f64) -> Verdict {
     let mut batches = batches(tests, mutant);
     let mut seconds = 0.0;

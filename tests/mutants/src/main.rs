@@ -52,7 +52,8 @@ enum Task {
     Build,
     /// Runs all tests without a mutant, and writes down which mutants each reaches.
     Reach {
-        /// Only those of these programs; `raydsl` is the library's unit tests.
+        /// Only those of these programs, also if they were run before; `raydsl` is the library's
+        /// unit tests.
         programs: Vec<String>,
     },
     /// Runs the tests on each mutant; goes on where an earlier run ended.
