@@ -2,11 +2,15 @@
 
 use raydsl::prelude::*;
 use raydsl_benches::contest::Cost;
-use raydsl_benches::embree::{self, Embree, Mode, Quality, Question, Scene, Shape};
+use raydsl_benches::embree::{self, Embree, Mode, Quality, Question, Robustness, Scene, Shape};
 
 use crate::contender::Contender;
 use crate::rays::Workload;
 use crate::row::Row;
+
+/// The system's name without its robust flag, and with it.
+pub(crate) const EMBREE: &str = "embree";
+pub(crate) const ROBUST: &str = "embree-robust";
 
 /// A device and what it reads.
 pub(crate) struct Device {
@@ -15,10 +19,11 @@ pub(crate) struct Device {
     primitives: usize,
 }
 
-/// A scene of some quality.
+/// A scene of some quality, with or without the robust flag.
 pub(crate) struct Tree<'a> {
     scene: Scene<'a>,
     quality: Quality,
+    pub(crate) system: &'static str,
     pub(crate) cost: Cost,
 }
 
@@ -43,14 +48,19 @@ impl Device {
         }
     }
 
-    /// Scenes of the two better qualities.
-    pub(crate) fn trees(&self) -> Vec<Tree<'_>> {
-        let tree = |quality| {
-            let scene = self.embree.build(&self.shape, quality);
+    /// Scenes of the two better qualities; with the robust flag, too, if `with_robust`.
+    pub(crate) fn trees(&self, with_robust: bool) -> Vec<Tree<'_>> {
+        let tree = |quality, system, robustness| {
+            let scene = self.embree.build(&self.shape, quality, robustness);
             let cost = Cost::new(scene.seconds, scene.bytes, self.primitives);
-            Tree { scene, quality, cost }
+            Tree { scene, quality, system, cost }
         };
-        [Quality::Medium, Quality::High].into_iter().map(tree).collect()
+        let all = [(EMBREE, Robustness::Off), (ROBUST, Robustness::On)];
+        let systems = all.into_iter().take(if with_robust { 2 } else { 1 });
+        let of_system = |(system, robustness)| {
+            [Quality::Medium, Quality::High].map(|quality| tree(quality, system, robustness))
+        };
+        systems.flat_map(of_system).collect()
     }
 }
 
@@ -65,9 +75,10 @@ pub(crate) fn contenders<'a>(
     for (tree, mode) in trees.iter().flat_map(|tree| Mode::ALL.map(|mode| (tree, mode))) {
         let rows = rows(work, threads).into_iter();
         let asked = rows.filter(|(row, _)| mode == Mode::SINGLE || *row != Row::SingleClosest);
-        all.extend(asked.map(|(row, question)| contender("embree", row, tree, mode, question)));
+        all.extend(asked.map(|(row, question)| contender(tree.system, row, tree, mode, question)));
     }
-    for (tree, mode) in trees.iter().flat_map(|tree| Mode::ALL.map(|mode| (tree, mode))) {
+    let unflagged = trees.iter().filter(|tree| tree.system == EMBREE);
+    for (tree, mode) in unflagged.flat_map(|tree| Mode::ALL.map(|mode| (tree, mode))) {
         let rows = sorted_rows(work, threads).into_iter();
         all.extend(rows.map(|(row, q)| contender("embree-sorted", row, tree, mode, q)));
     }

@@ -63,6 +63,10 @@ struct Args {
     /// Measures WGSL, too, on this machine's device and by its clock.
     #[arg(long)]
     device: bool,
+    /// Measures Embree with its robust flag, too, in a second column: the mode that promises what the
+    /// library promises, that no ray is lost between triangles.
+    #[arg(long)]
+    robust: bool,
     /// Lets the device's driver fuse and move operations: what exactness costs.
     #[arg(long, requires = "device")]
     fused: bool,
@@ -203,7 +207,7 @@ impl Trees<'_> {
         let own = self.own.iter_mut().map(|tree| ("raydsl", tree.name(), &mut tree.cost));
         let cwbvh = ("obvhs", "cwbvh".to_owned(), &mut self.cwbvh.cost);
         let embree = self.embree.iter_mut();
-        let embree = embree.map(|tree| ("embree", tree.name().to_owned(), &mut tree.cost));
+        let embree = embree.map(|tree| (tree.system, tree.name().to_owned(), &mut tree.cost));
         own.chain([cwbvh]).chain(embree).collect()
     }
 }
@@ -223,7 +227,7 @@ fn measure(
         let build = || Trees {
             own: own::trees(&scene.prims, threads, &args.traversal),
             cwbvh: cwbvh::Tree::new(&scene.prims, threads),
-            embree: device.as_ref().map_or_else(Vec::new, embree::Device::trees),
+            embree: device.as_ref().map_or_else(Vec::new, |device| device.trees(args.robust)),
         };
         let is_build_wanted = table::is_wanted(&args.only, Row::Build);
         let rounds = if is_build_wanted { args.rounds.into() } else { 0 };

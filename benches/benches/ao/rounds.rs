@@ -4,6 +4,7 @@ use raydsl_benches::clock::{median, spread};
 use raydsl_benches::contest::{Cost, Outcome};
 
 use crate::contender::Contender;
+use crate::embree::{EMBREE, ROBUST};
 use crate::rays::{SAMPLES, Workload};
 use crate::row::Row;
 
@@ -27,6 +28,8 @@ pub(crate) struct Figures {
     pub(crate) spread: f64,
     /// How much faster than the best mode of Embree: the median of the rounds' ratios.
     pub(crate) ratio: Option<f64>,
+    /// The same with Embree's robust flag.
+    pub(crate) robust_ratio: Option<f64>,
     pub(crate) hits: usize,
     pub(crate) mean_t: Option<f64>,
     pub(crate) is_ok: bool,
@@ -55,9 +58,9 @@ pub(crate) fn run(contenders: &mut [Contender<'_>], rounds: usize) -> Vec<Record
             }
         }
     }
-    let frame = embree_frame(&records);
+    let frames = [EMBREE, ROBUST].map(|system| embree_frame(&records, system));
     charge(&mut records);
-    records.extend(frame);
+    records.extend(frames.into_iter().flatten());
     records
 }
 
@@ -96,18 +99,18 @@ fn add(seconds: &mut [f64], more: &[f64]) {
     }
 }
 
-/// The mode of Embree with the least median time.
-fn best_embree(records: &[Record], row: Row) -> Option<&Record> {
-    let modes = records.iter().filter(|r| r.system == "embree" && r.row == row.rival());
+/// The mode of Embree, with or without its robust flag, that has the least median time.
+fn best_embree<'r>(records: &'r [Record], system: &str, row: Row) -> Option<&'r Record> {
+    let modes = records.iter().filter(|r| r.system == system && r.row == row.rival());
     modes.min_by(|a, b| median(&a.seconds).total_cmp(&median(&b.seconds)))
 }
 
 /// A picture with Embree: its best modes for both kinds of rays, and making them as a frame does,
 /// where what a camera ray meets is in registers when its shadow rays are made. Nobody has been
 /// charged yet.
-fn embree_frame(records: &[Record]) -> Option<Record> {
-    let primary = best_embree(records, Row::Primary)?;
-    let shadow = best_embree(records, Row::AoShort)?;
+fn embree_frame(records: &[Record], system: &'static str) -> Option<Record> {
+    let primary = best_embree(records, system, Row::Primary)?;
+    let shadow = best_embree(records, system, Row::AoShort)?;
     let mut seconds = primary.seconds.clone();
     add(&mut seconds, &shadow.seconds);
     for row in [Row::PrimaryGeneration, Row::FrameGeneration] {
@@ -116,7 +119,7 @@ fn embree_frame(records: &[Record]) -> Option<Record> {
     let hits = primary.outcome.hits + shadow.outcome.hits;
     Some(Record {
         row: Row::Frame,
-        system: "embree",
+        system,
         mode: "best of both".to_owned(),
         isa: shadow.isa,
         lanes: shadow.lanes,
@@ -154,16 +157,20 @@ pub(crate) fn rays(row: Row, work: &Workload) -> usize {
 
 /// The figures of one of the records.
 pub(crate) fn figures(record: &Record, records: &[Record], rays: usize) -> Figures {
-    let embree = best_embree(records, record.row);
+    let embree = best_embree(records, EMBREE, record.row);
     let expected =
         embree.or_else(|| find(records, record.row)).map_or(record.outcome, |r| r.outcome);
     let rates: Vec<f64> = record.seconds.iter().map(|s| rays as f64 / s * 1e-6).collect();
-    let ratios: Option<Vec<f64>> = embree
-        .map(|embree| embree.seconds.iter().zip(&record.seconds).map(|(a, b)| a / b).collect());
+    let ratios_to = |rival: &Record| -> Vec<f64> {
+        rival.seconds.iter().zip(&record.seconds).map(|(a, b)| a / b).collect()
+    };
+    let ratios = embree.map(ratios_to);
+    let robust_ratios = best_embree(records, ROBUST, record.row).map(ratios_to);
     Figures {
         mrays_per_s: median(&rates),
         spread: spread(ratios.as_ref().unwrap_or(&rates)),
         ratio: ratios.as_deref().map(median),
+        robust_ratio: robust_ratios.as_deref().map(median),
         hits: record.outcome.hits,
         mean_t: record.outcome.mean(),
         is_ok: record.outcome.agrees(&expected, rays),

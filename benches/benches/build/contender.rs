@@ -5,7 +5,7 @@ use obvhs::bvh2::builder::build_bvh2_from_tris;
 use raydsl::bvh::{BuildConfig, BuildQuality, Node};
 use raydsl::prelude::*;
 use raydsl_benches::clock::seconds_on;
-use raydsl_benches::embree::{self, Embree, Quality, Shape};
+use raydsl_benches::embree::{self, Embree, Quality, Robustness, Shape};
 
 /// What was built, and how long it took: see [`seconds_on`].
 pub(crate) struct Tree {
@@ -139,7 +139,8 @@ fn embree(triangles: &[Triangle], threads: usize) -> Vec<Contender<'_>> {
             let embree = Embree::load(&path, threads);
             let shape = shape.clone();
             let build: Build<'_> = Box::new(move || {
-                let scene = embree.as_ref().map_err(Clone::clone)?.build(&shape, quality);
+                let embree = embree.as_ref().map_err(Clone::clone)?;
+                let scene = embree.build(&shape, quality, Robustness::Off);
                 Ok(Tree {
                     seconds: scene.seconds,
                     sah_cost: None,

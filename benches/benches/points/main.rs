@@ -133,6 +133,7 @@ fn line(scene: &str, task: &Task<'_>, record: &Record, records: &[Record]) -> Li
         mrays_per_s: median(&rates),
         spread: spread(ratios.as_ref().unwrap_or(&rates)),
         ratio_to_embree: ratios.as_deref().map(median),
+        ratio_to_robust: None,
         build_ms: record.cost.build_ms,
         bytes_per_primitive: record.cost.bytes_per_primitive,
         hits: record.outcome.hits,

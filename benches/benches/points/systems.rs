@@ -5,7 +5,7 @@ use raydsl::prelude::*;
 use raydsl_benches::clock::seconds_on;
 use raydsl_benches::contest::{Cost, Outcome, pixels};
 use raydsl_benches::device::device_seconds;
-use raydsl_benches::embree::{self, Embree, Mode, Quality, Question, Shape};
+use raydsl_benches::embree::{self, Embree, Mode, Quality, Question, Robustness, Shape};
 use raydsl_benches::scenes::Point;
 
 /// The library's trees, and whether they are wide. `Best` splits primitives, from which balls of
@@ -158,7 +158,7 @@ impl<'a> Rounds<'a> {
             return;
         };
         let task = self.task;
-        let scene = embree.build(&task.shape, quality);
+        let scene = embree.build(&task.shape, quality, Robustness::Off);
         let cost = Cost::new(scene.seconds, scene.bytes, task.points.len());
         let who = |mode, lanes| Who { system: "embree", mode, isa: "embree", lanes };
         let built = Outcome { seconds: scene.seconds, ..Outcome::default() };

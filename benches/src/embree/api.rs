@@ -9,6 +9,8 @@ pub(super) type Handle = *mut c_void;
 type Monitor = unsafe extern "C" fn(Handle, isize, bool) -> bool;
 type ShareBuffer =
     unsafe extern "C" fn(Handle, c_int, c_uint, c_int, *const c_void, usize, usize, usize);
+/// A callback of user geometry: its arguments are a struct of its own kind.
+pub(super) type Callback = unsafe extern "C" fn(Handle);
 /// `rtcIntersect1`, `rtcOccluded1`: the scene, the ray, the arguments.
 pub(super) type TraceOne = unsafe extern "C" fn(Handle, *mut c_void, *mut Arguments);
 /// `rtcIntersect8` and the like: the lanes that count, the scene, the rays, the arguments.
@@ -67,11 +69,17 @@ api! {
     new_scene: "rtcNewScene" unsafe extern "C" fn(Handle) -> Handle,
     release_scene: "rtcReleaseScene" unsafe extern "C" fn(Handle),
     set_scene_quality: "rtcSetSceneBuildQuality" unsafe extern "C" fn(Handle, c_int),
+    set_scene_flags: "rtcSetSceneFlags" unsafe extern "C" fn(Handle, c_int),
     commit_scene: "rtcCommitScene" unsafe extern "C" fn(Handle),
     new_geometry: "rtcNewGeometry" unsafe extern "C" fn(Handle, c_int) -> Handle,
     release_geometry: "rtcReleaseGeometry" unsafe extern "C" fn(Handle),
     set_geometry_quality: "rtcSetGeometryBuildQuality" unsafe extern "C" fn(Handle, c_int),
     share_buffer: "rtcSetSharedGeometryBuffer" ShareBuffer,
+    set_user_data: "rtcSetGeometryUserData" unsafe extern "C" fn(Handle, *const c_void),
+    set_user_count: "rtcSetGeometryUserPrimitiveCount" unsafe extern "C" fn(Handle, c_uint),
+    set_bounds: "rtcSetGeometryBoundsFunction" unsafe extern "C" fn(Handle, Callback, Handle),
+    set_intersect: "rtcSetGeometryIntersectFunction" unsafe extern "C" fn(Handle, Callback),
+    set_occluded: "rtcSetGeometryOccludedFunction" unsafe extern "C" fn(Handle, Callback),
     commit_geometry: "rtcCommitGeometry" unsafe extern "C" fn(Handle),
     attach_geometry: "rtcAttachGeometry" unsafe extern "C" fn(Handle, Handle) -> c_uint,
     intersect_1: "rtcIntersect1" TraceOne,

@@ -1,9 +1,11 @@
 //! Embree 4, loaded while the program runs: there is nothing to link.
 
 mod api;
+mod entered;
 mod question;
 mod rays;
 mod scene;
+mod user;
 
 use std::ffi::{CString, OsStr, OsString};
 use std::sync::atomic::{AtomicIsize, Ordering};
@@ -13,7 +15,8 @@ use libloading::Library;
 use api::{Api, Handle};
 pub use question::{Mode, Question};
 pub use rays::{Lanes, RayHits, Rays, Width};
-pub use scene::{Coherence, Quality, Scene, Shape};
+pub use scene::{Coherence, Quality, Robustness, Scene, Shape};
+pub use user::User;
 
 /// Bytes that Embree holds now. Devices count one after another: a program builds one tree at a
 /// time.

@@ -7,13 +7,15 @@ use raydsl::prelude::*;
 
 use super::api::{Arguments, Handle, TraceMany, TraceOne};
 use super::rays::{Lanes, RayHits, Rays, Width};
+use super::user::{Callbacks, User};
 use super::{Embree, HELD};
 use crate::clock::seconds_on;
 
-/// `RTC_GEOMETRY_TYPE_TRIANGLE` and `RTC_GEOMETRY_TYPE_SPHERE_POINT`, the buffer types and formats
-/// of `rtcore_geometry.h`.
+/// `RTC_GEOMETRY_TYPE_TRIANGLE`, `RTC_GEOMETRY_TYPE_SPHERE_POINT` and `RTC_GEOMETRY_TYPE_USER`, the
+/// buffer types and formats of `rtcore_geometry.h`.
 const TRIANGLES: c_int = 0;
 const SPHERES: c_int = 50;
+const USER: c_int = 120;
 const INDEX: c_int = 0;
 const VERTEX: c_int = 1;
 const UINT3: c_int = 0x5003;
@@ -40,6 +42,24 @@ impl Quality {
             Self::Low => "low",
             Self::Medium => "medium",
             Self::High => "high",
+        }
+    }
+}
+
+/// Whether rays may be lost to rounding at edges and boxes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Robustness {
+    /// They may: `RTC_SCENE_FLAG_NONE`.
+    Off,
+    /// They are not: `RTC_SCENE_FLAG_ROBUST`.
+    On,
+}
+
+impl Robustness {
+    const fn flags(self) -> c_int {
+        match self {
+            Self::Off => 0,
+            Self::On => 1 << 2,
         }
     }
 }
@@ -103,17 +123,56 @@ unsafe impl Sync for Scene<'_> {}
 
 impl Embree {
     /// Builds a scene, which reads the buffers of `shape` as long as it lives.
-    pub fn build<'a>(&'a self, shape: &'a Shape, quality: Quality) -> Scene<'a> {
-        let (api, quality) = (&self.api, quality as c_int);
-        let before = HELD.load(Ordering::Relaxed);
+    pub fn build<'a>(
+        &'a self,
+        shape: &'a Shape,
+        quality: Quality,
+        robustness: Robustness,
+    ) -> Scene<'a> {
         // SAFETY: both buffers outlive the scene, and the vertices have the padding that is asked
         // for.
+        self.build_of(shape.kind(), quality, robustness, |geometry| unsafe {
+            self.share(geometry, shape);
+        })
+    }
+
+    /// Builds a scene of primitives with callbacks, which it calls as long as it lives.
+    pub fn build_user<'a>(
+        &'a self,
+        user: &'a User<'_>,
+        quality: Quality,
+        robustness: Robustness,
+    ) -> Scene<'a> {
+        let api = &self.api;
+        let Callbacks { user, count, bounds, intersect, occluded } = user.callbacks();
+        // SAFETY: the callbacks are of their kinds, and what they read outlives the scene.
+        self.build_of(USER, quality, robustness, |geometry| unsafe {
+            (api.set_user_count)(geometry, count);
+            (api.set_user_data)(geometry, user);
+            (api.set_bounds)(geometry, bounds, std::ptr::null_mut());
+            (api.set_intersect)(geometry, intersect);
+            (api.set_occluded)(geometry, occluded);
+        })
+    }
+
+    /// Builds a scene of one geometry of this kind, which `fill` gives its primitives.
+    fn build_of(
+        &self,
+        kind: c_int,
+        quality: Quality,
+        robustness: Robustness,
+        fill: impl FnOnce(Handle),
+    ) -> Scene<'_> {
+        let (api, quality) = (&self.api, quality as c_int);
+        let before = HELD.load(Ordering::Relaxed);
+        // SAFETY: each handle is used while it is held.
         let (scene, seconds) = seconds_on(self.threads, || unsafe {
             let scene = (api.new_scene)(self.device);
             (api.set_scene_quality)(scene, quality);
-            let geometry = (api.new_geometry)(self.device, shape.kind());
+            (api.set_scene_flags)(scene, robustness.flags());
+            let geometry = (api.new_geometry)(self.device, kind);
             (api.set_geometry_quality)(geometry, quality);
-            self.share(geometry, shape);
+            fill(geometry);
             (api.commit_geometry)(geometry);
             (api.attach_geometry)(scene, geometry);
             (api.release_geometry)(geometry);
