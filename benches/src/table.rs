@@ -50,7 +50,7 @@ pub fn print(lines: &[Line]) {
     for of_row in lines.chunk_by(|a, b| a.row == b.row) {
         println!("{}: {}", of_row[0].row, of_row[0].rays);
         println!(
-            "  {:<14}{:<22}{:>8}{:>7}{:>8}{:>7}{}{:>7}{:>9}  status",
+            "  {:<14}{:<24}{:>8}{:>7}{:>8}{:>7}{}{:>7}{:>9}  status",
             "system",
             "mode",
             "build ms",
@@ -64,7 +64,7 @@ pub fn print(lines: &[Line]) {
         for l in of_row.iter().filter(|l| l.status != "skipped") {
             let robust = if has_robust { shown(l.ratio_to_robust) } else { String::new() };
             println!(
-                "  {:<14}{:<22}{:>8.0}{:>7.1}{:>8.3}{}{robust}{:>6.1}%{:>9}  {}",
+                "  {:<14}{:<24}{:>8.0}{:>7.1}{:>8.3}{}{robust}{:>6.1}%{:>9}  {}",
                 l.system,
                 l.mode,
                 l.build_ms,
@@ -106,7 +106,7 @@ fn print_summary(lines: &[Line]) {
     let has_robust = lines.iter().any(|l| l.ratio_to_robust.is_some());
     println!("the library's best mode against Embree's, millions of rays a second");
     println!(
-        "  {:<13}{:>2} {:<19}{:<22}{:>8}{:>8}{:>7}{}",
+        "  {:<13}{:>2} {:<19}{:<24}{:>8}{:>8}{:>7}{}",
         "scene",
         "th",
         "row",
@@ -127,7 +127,7 @@ fn print_summary(lines: &[Line]) {
             let rate = theirs.map(|l| l.mrays_per_s).fold(0.0, f64::max);
             let robust = if has_robust { shown(l.ratio_to_robust) } else { String::new() };
             println!(
-                "  {:<13}{:>2} {:<19}{:<22}{:>8.3}{rate:>8.3}{}{robust}",
+                "  {:<13}{:>2} {:<19}{:<24}{:>8.3}{rate:>8.3}{}{robust}",
                 l.scene,
                 l.threads,
                 l.row,

@@ -22,6 +22,11 @@ impl Query {
             Self::Shadow => "shadow_short",
         }
     }
+
+    pub(crate) fn from_name(name: &str) -> Result<Self, String> {
+        let query = Self::ALL.into_iter().find(|query| query.name() == name);
+        query.ok_or_else(|| format!("one of {}", Self::ALL.map(Self::name).join(", ")))
+    }
 }
 
 /// Runs a query once.

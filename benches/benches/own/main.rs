@@ -44,6 +44,9 @@ struct Args {
     /// Width and height of the film, a multiple of 16.
     #[arg(long, default_value = "512", value_parser = parse_size)]
     size: u32,
+    /// Only this: primary, shadow_short.
+    #[arg(long, value_delimiter = ',', value_parser = Query::from_name)]
+    only: Vec<Query>,
     /// Cargo says so.
     #[arg(long, hide = true)]
     bench: bool,
@@ -61,6 +64,9 @@ fn main() -> ExitCode {
     lines.extend(of_scene(&args, "hair", shapes::fur));
     lines.extend(of_scene(&args, "color_sphere", shapes::scan));
     lines.extend(of_scene(&args, "enum", shapes::kinds));
+    if lines.is_empty() {
+        eprintln!("own: no scene has such a name: torus, hair, color_sphere, enum");
+    }
     finish(&lines, args.json.as_deref())
 }
 
@@ -92,6 +98,7 @@ fn measure<P: Shape>(args: &Args, place: Place<'_>, scene: &Scene<P>) -> Vec<Lin
         );
         let mut contenders = ours::contenders(&trees, &work, threads);
         contenders.extend(embree::contenders(&theirs, &work, threads));
+        contenders.retain(|contender| args.only.is_empty() || args.only.contains(&contender.query));
         let rays = |query| match query {
             Query::Primary => primary,
             Query::Shadow => shadow,

@@ -16,18 +16,36 @@ pub(crate) struct Tree<'a, P: Shape> {
     cost: Cost,
 }
 
-/// All trees: what stands behind the variant in the names of modes, quality, and whether it is wide.
-const SETTINGS: [(&str, BuildQuality, bool); 4] = [
-    ("", BuildQuality::Balanced, false),
-    (" best", BuildQuality::Best, false),
-    (" wide", BuildQuality::Balanced, true),
-    (" best wide", BuildQuality::Best, true),
+/// How a tree is built.
+struct Setting {
+    /// Behind the variant in the names of modes.
+    name: &'static str,
+    quality: BuildQuality,
+    is_wide: bool,
+    /// The default, or one primitive as in Embree's trees over user geometry: for primitives that take
+    /// longer than a box. Wide trees have eight.
+    max_leaf_size: u32,
+}
+
+impl Setting {
+    const fn new(name: &'static str, quality: BuildQuality, is_wide: bool, leaf: u32) -> Self {
+        Self { name, quality, is_wide, max_leaf_size: leaf }
+    }
+}
+
+/// All trees.
+const SETTINGS: [Setting; 5] = [
+    Setting::new("", BuildQuality::Balanced, false, 4),
+    Setting::new(" best", BuildQuality::Best, false, 4),
+    Setting::new(" best leaf 1", BuildQuality::Best, false, 1),
+    Setting::new(" wide", BuildQuality::Balanced, true, 4),
+    Setting::new(" best wide", BuildQuality::Best, true, 4),
 ];
 
 /// Builds each tree.
 pub(crate) fn trees<P: Shape>(prims: &[P], threads: usize) -> Vec<Tree<'_, P>> {
-    let tree = |(name, quality, is_wide)| {
-        let config = BuildConfig { quality, ..BuildConfig::default() };
+    let tree = |Setting { name, quality, is_wide, max_leaf_size }| {
+        let config = BuildConfig { quality, max_leaf_size, ..BuildConfig::default() };
         let build = || match is_wide {
             true => Bvh::build_wide(prims, &[], &config),
             false => Bvh::build_with(prims, &config),
@@ -80,7 +98,8 @@ impl<'a, P: Shape> Ask<'a, P> {
     /// The closest hits of the camera's rays.
     fn closest(self) -> Run<'a> {
         let rays: Vec<(Ray,)> = self.work.primary.iter().map(|ray| (*ray,)).collect();
-        let mut found = self.work.hits.clone();
+        let missed = |record: &P::Hit| record.with_hit(Hit::miss());
+        let mut found: Vec<P::Hit> = self.work.hits.iter().map(missed).collect();
         Box::new(move || {
             let bvh = self.bvh;
             let kernel = kernel!(|ray: Ray| bvh.closest_hit(ray));

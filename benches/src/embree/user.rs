@@ -30,11 +30,12 @@ struct Typed<'a, P, L> {
     lanes: L,
 }
 
-/// What Embree is given of primitives of some type.
+/// Primitives of some type.
 trait Data: Sync {
     fn callbacks(&self) -> Callbacks;
 }
 
+/// What a scene is given: data of the callbacks, the number of primitives, and the callbacks.
 pub(super) struct Callbacks {
     pub(super) user: *const c_void,
     pub(super) count: c_uint,
@@ -63,7 +64,7 @@ impl<'a> User<'a> {
     /// If there are more primitives than Embree can count.
     pub fn new<P: Primitive<Shared = ()>>(prims: &'a [P], variant: Variant) -> Option<Self> {
         assert!(u32::try_from(prims.len()).is_ok(), "Embree counts primitives with 32 bits");
-        // A kernel knows the registers of each variant; this one is not run.
+        // A kernel chooses the registers of each variant; this one is not run.
         let kernel = kernel!(|x: f32| x);
         kernel.with_packets(variant, WithLanes(prims))
     }
@@ -328,4 +329,66 @@ fn within<L: Lanes>(m: &Packet<L>, hit: HitOn<Packet<L>>, ray: RayOn<Packet<L>>)
     let behind_start = m.f32_compare(op::Ge, hit.t.0, ray.t_min.0);
     let before_end = m.f32_compare(op::Le, hit.t.0, ray.t_max.0);
     l.mask_binary(op::And, is_hit, l.mask_binary(op::And, behind_start, before_end))
+}
+
+#[cfg(test)]
+mod tests {
+    use raydsl_tests::scenes::{random_rays, spheres};
+
+    use super::*;
+    use crate::embree::rays::{self, RayHits, Rays, Width};
+
+    /// A lane that does not count.
+    const IDLE: usize = 3;
+
+    /// Runs both callbacks for every primitive and a packet of `N` rays; how many hits there were.
+    fn check<const N: usize>(user: &User<'_>, prims: &[raydsl_tests::scenes::ColorSphere]) -> usize
+    where
+        rays::Lanes<N>: Width,
+    {
+        let Callbacks { user, intersect, occluded, .. } = user.callbacks();
+        let valid: [c_int; N] = std::array::from_fn(|lane| -c_int::from(lane != IDLE));
+        let call = |callback: Callback, primitive: usize, rays: *mut f32| {
+            let mut arguments = RayArguments {
+                valid: valid.as_ptr(),
+                user: user.cast_mut(),
+                primitive: primitive as c_uint,
+                context: std::ptr::null_mut(),
+                rays,
+                count: N as c_uint,
+                geometry: 0,
+            };
+            // SAFETY: the arguments are those that Embree gives.
+            unsafe { callback((&raw mut arguments).cast()) };
+        };
+        let mut count = 0;
+        for (i, prim) in prims.iter().enumerate() {
+            let rays = random_rays(i as u64, N);
+            let lanes = rays.iter().enumerate().filter(|(lane, _)| *lane != IDLE);
+            let hits = lanes.map(|(_, ray)| (ray, prim.intersect(*ray)));
+            let hits = hits.filter(|(ray, h)| h.is_hit && h.t >= ray.t_min && h.t <= ray.t_max);
+            let expected: Vec<f32> = hits.map(|(_, hit)| hit.t).collect();
+            let mut closest = RayHits::<N>::of(rays.iter().copied());
+            call(intersect, i, (&raw mut closest).cast());
+            assert_eq!(closest.distances().collect::<Vec<_>>(), expected, "primitive {i}");
+            let mut any = Rays::<N>::of(rays);
+            call(occluded, i, (&raw mut any).cast());
+            assert_eq!(any.occluded(), expected.len(), "primitive {i}");
+            count += expected.len();
+        }
+        count
+    }
+
+    #[test]
+    fn callbacks_find_what_primitives_find() {
+        let prims = spheres(2000);
+        for variant in [Variant::Packet4, Variant::Packet8, Variant::Packet16] {
+            let Some(user) = User::new(&prims, variant).filter(|_| variant.is_native()) else {
+                continue;
+            };
+            // A packet of the variant's width, and one that is answered ray by ray.
+            assert!(check::<8>(&user, &prims) > 20);
+            assert!(check::<16>(&user, &prims) > 20);
+        }
+    }
 }
