@@ -199,7 +199,7 @@ fn of(device: &Device, builtin: &Builtin) -> Result<Row, Error> {
         domain: match builtin.domain {
             Domain::Magnitudes(low, high) => format!("+-2^{low}..2^{high}"),
             Domain::Positive(low, high) => format!("2^{low}..2^{high}"),
-            Domain::Interval(low, high) => format!("{low:.4}..{high:.4}"),
+            Domain::Interval(low, high) => format!("{}..{}", short(low), short(high)),
         },
         nearest: 0.0,
         worst_ulp: 0.0,
@@ -235,6 +235,11 @@ fn of(device: &Device, builtin: &Builtin) -> Result<Row, Error> {
     Ok(row)
 }
 
+/// Returns a number with four decimals, or none where it needs none.
+fn short(x: f64) -> String {
+    if x.fract() == 0.0 { format!("{x}") } else { format!("{x:.4}") }
+}
+
 /// Returns the distance between the `f32` around a number.
 fn ulp_of(x: f64) -> f64 {
     let exponent = x.abs().max(f64::from(f32::MIN_POSITIVE)).log2().floor();
@@ -243,7 +248,7 @@ fn ulp_of(x: f64) -> f64 {
 
 pub(crate) fn print(rows: &[Row]) {
     println!(
-        "\n{:<30}{:<18}{:>9}{:>11}{:>10}  {:<15}verdict",
+        "\n{:<29}{:<16}{:>9}{:>12}{:>10}  {:<16}verdict",
         "builtin", "inputs", "nearest %", "ulp", "absolute", "WGSL's bound"
     );
     for row in rows {
@@ -253,7 +258,7 @@ pub(crate) fn print(rows: &[Row]) {
             Some(false) => "BROKEN",
         };
         println!(
-            "{:<30}{:<18}{:>9.2}{:>11.4}{:>10.2e}  {:<15}{verdict}",
+            "{:<29}{:<16}{:>9.2}{:>12.2}{:>10.2e}  {:<16}{verdict}",
             row.builtin,
             row.domain,
             100.0 * row.nearest,
