@@ -66,7 +66,7 @@ fn main() -> ExitCode {
 fn run(args: &Args) -> Result<(), Error> {
     println!("one thread, {} rounds; gain: even over adaptive", args.rounds);
     println!(
-        "{:<18}{:>10}{:>11}{:>11}{:>9}{:>11}{:>11}{:>11}{:>9}{:>9}",
+        "{:<16}{:>10}{:>9}{:>10}{:>7}{:>10}{:>10}{:>9}{:>7}{:>8}",
         "scene",
         "tolerance",
         "samples",
@@ -182,7 +182,7 @@ fn measure<C: Camera + Sync>(
         .collect();
     let samples = [median(&even.samples), median(&adaptive.samples)];
     println!(
-        "{:<18}{:>10}{:>11.0}{:>11.0}{:>9.2}{:>11.5}{:>11.5}{:>11.2}{:>9.2}{:>8.1}%",
+        "{:<16}{:>10}{:>9.0}{:>10.0}{:>7.2}{:>10.5}{:>10.5}{:>9.2}{:>7.2}{:>7.1}%",
         known.name,
         known.tolerance,
         samples[0],
