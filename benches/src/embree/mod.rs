@@ -1,7 +1,6 @@
 //! Embree 4, loaded while the program runs: there is nothing to link.
 
 mod api;
-mod entered;
 mod question;
 mod rays;
 mod scene;

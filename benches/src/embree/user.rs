@@ -9,11 +9,10 @@ use std::ffi::{c_int, c_uint, c_void};
 
 use raydsl::geometry::{HitOn, HitRecord, Primitive, RayOn, shared_slice};
 use raydsl::kernel::{PacketKernel, PacketTask};
-use raydsl::machine::{B, F, Lanes, Machine, Packet, V3, op};
+use raydsl::machine::{B, Entered, F, Lanes, Machine, Packet, V3, op};
 use raydsl::prelude::*;
 
 use super::api::{Callback, Handle};
-use super::entered::Entered;
 
 /// Primitives, and how packets of rays are tested.
 pub struct User<'a> {
@@ -242,7 +241,7 @@ unsafe fn answer_packet<P: Primitive<Shared = ()>, L: Lanes, const IS_CLOSEST: b
     prim: &P,
     lanes: L,
 ) {
-    let l = Entered(lanes);
+    let l = Entered::new(lanes);
     let valid = l.i32_from_fn(
         #[inline(always)]
         // SAFETY: as the caller says.

@@ -90,7 +90,10 @@ pub use gang::Gang;
 pub(crate) use host::host_options;
 pub(crate) use index::{Index, Indexed, element_in_step};
 pub use kinds::Kinds;
-pub(crate) use lanes::{Entered, fill};
+/// For callbacks of other tracers, whose code the caller has compiled for a level.
+#[doc(hidden)]
+pub use lanes::Entered;
+pub(crate) use lanes::fill;
 pub use lanes::{Lanes, One, Simd4, Simd8, Simd16};
 pub(crate) use lifted::*;
 pub use margin::{Leaf, Margin, Outcomes, Rounding, result_leaves};

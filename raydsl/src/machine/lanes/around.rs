@@ -12,11 +12,12 @@ use crate::machine::{
 /// Kernels that run on them are inlined instead of entering the level again; that is for the
 /// innermost loops, which must not pass registers through memory.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Entered<L, const STRAIGHT: bool = false>(L);
+pub struct Entered<L, const STRAIGHT: bool = false>(L);
 
 impl<L> Entered<L> {
+    /// Wraps lanes for code that [`Lanes::vectorize`] of them runs.
     #[inline(always)]
-    pub(crate) fn new(lanes: L) -> Self {
+    pub fn new(lanes: L) -> Self {
         Self(lanes)
     }
 }

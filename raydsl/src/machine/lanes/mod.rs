@@ -13,7 +13,7 @@ use core::mem::{ManuallyDrop, MaybeUninit};
 
 use fearless_simd::Level;
 
-pub(crate) use around::Entered;
+pub use around::Entered;
 pub use one::One;
 pub use simd::{Simd4, Simd8, Simd16};
 
