@@ -1,4 +1,4 @@
-//! Counters of traversals, in a tree with one node and one block.
+//! Counters of traversals, in trees with one node and one block.
 #![cfg(feature = "counts")]
 
 use raydsl::bvh::Counts;
@@ -16,6 +16,20 @@ fn triangles() -> [Triangle; 3] {
 /// A ray straight down at one of the triangles, or past them.
 fn ray(i: u16, is_aimed: bool) -> Ray {
     let x = if is_aimed { 0.0 } else { 100.0 } + f32::from(i) / 64.0;
+    Ray::new(Vec3::new(x, 0.0, 5.0), Vec3::new(1e-3, 1e-3, -1.0))
+}
+
+/// A cylinder, whose test takes longer than that of its box.
+#[primitive(cylinder(from, to, radius))]
+struct Rod {
+    from: Vec3,
+    to: Vec3,
+    radius: f32,
+}
+
+/// A ray straight down at the first, second or third of three rods.
+fn ray_to_rod(i: u16) -> Ray {
+    let x = 4.0 * f32::from(i % 3) + f32::from(i) / 256.0;
     Ray::new(Vec3::new(x, 0.0, 5.0), Vec3::new(1e-3, 1e-3, -1.0))
 }
 
@@ -65,4 +79,30 @@ fn counts_are_those_of_one_node_and_one_block() {
     // In a stream each ray visits nodes by itself, and stops at a hit.
     assert!(bvh.any_hits(&rays).iter().all(|is_hit| *is_hit));
     assert_eq!(Counts::take(), Counts { nodes: 64, blocks: 64, ..Counts::default() });
+
+    // Of primitives with boxes those are tested whose boxes a ray enters: one for each ray.
+    let rods = [0.0, 4.0, 8.0].map(|x| Rod {
+        from: Vec3::new(x, 0.0, 0.0),
+        to: Vec3::new(x, 0.0, 1.0),
+        radius: 0.5,
+    });
+    let bvh = Bvh::build_wide(&rods, &[], &config).unwrap();
+    let rays: Vec<Ray> = (0..64).map(ray_to_rod).collect();
+    assert!(bvh.any_hits(&rays).iter().all(|is_hit| *is_hit));
+    let stream = Counts { nodes: 64, blocks: 64, pairs: 64, ..Counts::default() };
+    assert_eq!(Counts::take(), stream);
+
+    // A third of the rays of a register enters each box, so they are tested as pairs too.
+    assert!(bvh.closest_hits(&rays).iter().zip(0..).all(|(hit, i)| hit.prim_id == i % 3));
+    let packets = Counts {
+        beams: 1,
+        beam_rays: 64,
+        beam_nodes: 1,
+        beam_blocks: 1,
+        register_boxes: 4 * registers,
+        register_blocks: registers,
+        pairs: 64,
+        ..Counts::default()
+    };
+    assert_eq!(Counts::take(), packets);
 }

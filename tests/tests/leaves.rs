@@ -232,13 +232,20 @@ fn numbers_of_one_byte_and_kinds() {
             shell: Unorm16::new(rng.range(0.2, 0.7)),
         })
         .collect();
-    let hits = assert_as_slice!(leaves(&grains, BuildQuality::Balanced), grains, rays);
-    assert!(hits > 200, "{hits}");
     let faces = triangles(&mut rng, 60);
     let mut things: Vec<Thing> = balls(&mut rng, 60).into_iter().map(Thing::Ball).collect();
     things.extend(faces.into_iter().map(Thing::Face));
-    let hits = assert_as_slice!(leaves(&things, BuildQuality::Best), things, rays);
-    assert!(hits > 200, "{hits}");
+    // Neither is short, so blocks have boxes of the primitives.
+    let mut grains_tree = leaves(&grains, BuildQuality::Balanced);
+    let mut things_tree = leaves(&things, BuildQuality::Best);
+    for traversal in Traversal::ALL {
+        grains_tree.set_traversal(traversal);
+        let hits = assert_as_slice!(grains_tree, grains, rays);
+        assert!(hits > 200, "{hits} with {traversal:?}");
+        things_tree.set_traversal(traversal);
+        let hits = assert_as_slice!(things_tree, things, rays);
+        assert!(hits > 200, "{hits} with {traversal:?}");
+    }
 }
 
 /// Blocks are intersected without early returns.

@@ -17,6 +17,7 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::Parser;
+use raydsl::prelude::Traversal;
 use raydsl_benches::contest::TILE;
 use raydsl_benches::scenes::Scene;
 use raydsl_benches::table::{Line, finish, print};
@@ -44,6 +45,9 @@ struct Args {
     /// Width and height of the film, a multiple of 16.
     #[arg(long, default_value = "512", value_parser = parse_size)]
     size: u32,
+    /// How wide trees are traversed, each measured on its own: auto, streams, packets, sorted.
+    #[arg(long, value_delimiter = ',', default_value = "auto", value_parser = parse_traversal)]
+    traversal: Vec<Traversal>,
     /// Only this: primary, shadow_short.
     #[arg(long, value_delimiter = ',', value_parser = Query::from_name)]
     only: Vec<Query>,
@@ -55,6 +59,11 @@ struct Args {
 fn parse_size(text: &str) -> Result<u32, String> {
     let size = text.parse::<u32>().ok().filter(|n| (TILE..=4096).contains(n) && n % TILE == 0);
     size.ok_or_else(|| "sizes are multiples of 16 up to 4096".to_owned())
+}
+
+fn parse_traversal(text: &str) -> Result<Traversal, String> {
+    let named = Traversal::ALL.into_iter().find(|traversal| traversal.name() == text);
+    named.ok_or_else(|| format!("one of {}", Traversal::ALL.map(Traversal::name).join(", ")))
 }
 
 fn main() -> ExitCode {
@@ -86,7 +95,7 @@ fn measure<P: Shape>(args: &Args, place: Place<'_>, scene: &Scene<P>) -> Vec<Lin
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
     let pool = pool.expect("threads can be started");
     pool.install(|| {
-        let trees = ours::trees(&scene.prims, threads);
+        let trees = ours::trees(&scene.prims, threads, &args.traversal);
         let device = embree::Device::load(&scene.prims, threads);
         let theirs = device.as_ref().map_or_else(Vec::new, embree::Device::trees);
         let work = Workload::new(&trees[0].bvh, &scene.camera, args.size);

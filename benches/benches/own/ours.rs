@@ -12,11 +12,12 @@ use crate::shapes::Shape;
 /// A tree, and how it was built.
 pub(crate) struct Tree<'a, P: Shape> {
     pub(crate) bvh: Bvh<'a, P>,
-    name: &'static str,
+    name: String,
     cost: Cost,
 }
 
 /// How a tree is built.
+#[derive(Clone, Copy)]
 struct Setting {
     /// Behind the variant in the names of modes.
     name: &'static str,
@@ -43,9 +44,14 @@ const SETTINGS: [Setting; 5] = [
 ];
 
 /// Builds each tree.
-pub(crate) fn trees<P: Shape>(prims: &[P], threads: usize) -> Vec<Tree<'_, P>> {
-    let tree = |Setting { name, quality, is_wide, max_leaf_size }| {
-        let config = BuildConfig { quality, max_leaf_size, ..BuildConfig::default() };
+pub(crate) fn trees<'a, P: Shape>(
+    prims: &'a [P],
+    threads: usize,
+    traversals: &[Traversal],
+) -> Vec<Tree<'a, P>> {
+    let tree = |Setting { name, quality, is_wide, max_leaf_size }: Setting,
+                traversal: Traversal| {
+        let config = BuildConfig { quality, max_leaf_size, traversal, ..BuildConfig::default() };
         let build = || match is_wide {
             true => Bvh::build_wide(prims, &[], &config),
             false => Bvh::build_with(prims, &config),
@@ -53,9 +59,16 @@ pub(crate) fn trees<P: Shape>(prims: &[P], threads: usize) -> Vec<Tree<'_, P>> {
         let (bvh, seconds) = seconds_on(threads, build);
         let bvh = bvh.expect("the scene has finite bounds");
         let cost = Cost::new(seconds, bvh.bytes(), prims.len());
+        let name = match traversal {
+            Traversal::Auto => name.to_owned(),
+            _ => format!("{name} {}", traversal.name()),
+        };
         Tree { bvh, name, cost }
     };
-    SETTINGS.map(tree).into()
+    // Binary trees have one traversal.
+    let of = |setting: &Setting| if setting.is_wide { traversals } else { &[Traversal::Auto] };
+    let all = SETTINGS.iter().flat_map(|setting| of(setting).iter().map(move |&t| (*setting, t)));
+    all.map(|(setting, traversal)| tree(setting, traversal)).collect()
 }
 
 /// Every mode of both queries. Shadow rays are asked in two ways: one a lane, and eight a lane at once.

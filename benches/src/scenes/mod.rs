@@ -28,6 +28,7 @@ pub struct ColorSphere {
 #[primitive]
 impl ColorSphere {
     const SLACK: f32 = sphere::SLACK;
+    const IS_SHORT: bool = true;
 
     /// Where a ray meets the sphere.
     #[inline]

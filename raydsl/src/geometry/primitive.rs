@@ -55,9 +55,11 @@ pub trait Primitive: Type {
     /// `impl` under `#[primitive]` it is a constant of that name.
     const MAX_CROSSINGS: u32 = 8;
 
-    /// Whether eight primitives of a block of a [wide tree](crate::bvh::Bvh::build_wide) are tested
-    /// without the early exits of `intersect`: faster where it has a hundred operations or so and
-    /// no loop. Hits are the same. In an `impl` under `#[primitive]` it is a constant of that name.
+    /// Whether `intersect` has a hundred operations or so and no loop, as for triangles and spheres.
+    /// [Wide trees](crate::bvh::Bvh::build_wide) test eight primitives of a block at once without
+    /// the early exits of `intersect` then. Of others they keep the boxes too, 24 bytes each, and
+    /// test the primitives whose boxes a ray enters. Hits are the same. In an `impl` under
+    /// `#[primitive]` it is a constant of that name.
     const IS_SHORT: bool = false;
 
     /// Intersects `ray` with the primitive. It sees the ray's own `t_min` and `t_max` and need not

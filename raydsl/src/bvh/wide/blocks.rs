@@ -1,9 +1,9 @@
 //! Primitives in blocks of eight, in structure-of-arrays layout.
 
 use super::collapse::Range;
-use super::node::WIDTH;
+use super::node::{NO_BOXES, Planes, WIDTH, set_box};
 use crate::bvh::build::tasks;
-use crate::geometry::Primitive;
+use crate::geometry::{Aabb, Primitive};
 use crate::machine::{Leaves, Machine, Schema, Type, Value, op};
 
 /// One word of each of eight primitives.
@@ -20,6 +20,14 @@ pub(crate) struct Blocks {
     rows: Vec<Row>,
     /// Rows per block, for code that is not generic over the primitive.
     height: usize,
+    /// The boxes of each block's primitives, if they [have boxes](has_boxes).
+    boxes: Vec<Planes>,
+}
+
+/// Whether blocks have the boxes of their primitives: tests of primitives that take longer than
+/// those of boxes are worth a test of their own box first.
+pub(super) const fn has_boxes<P: Primitive>() -> bool {
+    !P::IS_SHORT
 }
 
 /// Fills a block with the primitives of these ids; the bytes are scratch space for one of them.
@@ -30,10 +38,33 @@ const PIECE: usize = 512;
 
 impl Blocks {
     /// Builds the blocks of these ranges of the index list.
-    pub(super) fn of<P: Primitive>(prims: &[P], indices: &[u32], ranges: &[Range]) -> Self {
-        Self::filled(words_of::<P>() + 1, indices, ranges, &|block, ids, bytes| {
-            fill(block, prims, ids, bytes);
-        })
+    pub(super) fn of<P: Primitive>(
+        prims: &[P],
+        shared: &[P::Shared],
+        indices: &[u32],
+        ranges: &[Range],
+    ) -> Self {
+        let mut blocks =
+            Self::filled(words_of::<P>() + 1, indices, ranges, &|block, ids, bytes| {
+                fill(block, prims, ids, bytes);
+            });
+        if const { has_boxes::<P>() } {
+            blocks.add_boxes(&|id| prims[id as usize].get_bounds(shared));
+        }
+        blocks
+    }
+
+    /// Adds the boxes of all primitives.
+    fn add_boxes(&mut self, bounds: &(dyn Fn(u32) -> Aabb + Sync)) {
+        let mut boxes = vec![NO_BOXES; self.len()];
+        tasks::map_pieces_mut(&mut boxes, PIECE, |first, boxes| {
+            for (block, planes) in boxes.iter_mut().enumerate() {
+                for (slot, &id) in self.members(first + block).iter().enumerate() {
+                    set_box(planes, slot, bounds(id));
+                }
+            }
+        });
+        self.boxes = boxes;
     }
 
     /// Builds blocks of `height` rows, each of the primitives of its range.
@@ -47,7 +78,7 @@ impl Blocks {
                 fill(block, ids, &mut bytes);
             }
         });
-        Self { rows, height }
+        Self { rows, height, boxes: Vec::new() }
     }
 
     /// Returns the rows of a block of these primitives; the last one has their ids.
@@ -55,6 +86,12 @@ impl Blocks {
     pub(crate) fn block<P: Primitive>(&self, index: usize) -> &[Row] {
         let height = const { words_of::<P>() + 1 };
         &self.rows[index * height..][..height]
+    }
+
+    /// Returns the boxes of a block's primitives, which [have boxes](has_boxes).
+    #[inline(always)]
+    pub(super) fn boxes(&self, index: usize) -> &Planes {
+        &self.boxes[index]
     }
 
     pub(super) fn len(&self) -> usize {
@@ -69,7 +106,7 @@ impl Blocks {
     }
 
     pub(crate) fn bytes(&self) -> usize {
-        size_of_val(&self.rows[..])
+        size_of_val(&self.rows[..]) + size_of_val(&self.boxes[..])
     }
 }
 
@@ -96,6 +133,19 @@ fn each_once(ids: &[u32]) -> [u32; WIDTH] {
         }
     }
     once
+}
+
+/// Returns the row of a block with the kinds of its primitives, if there are several.
+pub(super) const fn kind_row<P: Primitive>() -> Option<usize> {
+    let Schema::Struct { fields, .. } = P::SCHEMA else { return None };
+    let mut i = 0;
+    while P::KINDS > 1 && i < fields.len() {
+        if matches!(fields[i].schema, Schema::Kind { .. }) {
+            return Some(fields[i].offset / 4);
+        }
+        i += 1;
+    }
+    None
 }
 
 /// Returns the size of a primitive in words.

@@ -27,6 +27,9 @@ pub struct Counts {
     pub nodes: u64,
     /// Blocks visited by single rays and rays of streams, each a test of up to eight primitives.
     pub blocks: u64,
+    /// Pairs of a ray and a primitive whose box it enters, each tested in a lane, where `intersect`
+    /// is not [short](crate::geometry::Primitive::IS_SHORT).
+    pub pairs: u64,
     /// Those of `blocks` and `register_blocks` that held a nearer hit, in closest-hit queries.
     pub nearer: u64,
 }
@@ -46,6 +49,7 @@ impl Counts {
             register_primitives: of(Event::RegisterPrimitive),
             nodes: of(Event::Node),
             blocks: of(Event::Block),
+            pairs: of(Event::Pair),
             nearer: of(Event::Nearer),
         }
     }
@@ -63,6 +67,7 @@ pub(super) enum Event {
     RegisterPrimitive,
     Node,
     Block,
+    Pair,
     Nearer,
 }
 

@@ -59,7 +59,7 @@ pub(super) fn any_hit<R: Lanes, E: Lanes, P: Primitive>(
                 trace_packets(r, intersector, root, rays, groups, packet_scratch, &mut interleaved);
             }
             interleaved.start(rays);
-            trace_interleaved::<false, E, P>(e, intersector, rays.words(), interleaved);
+            trace_interleaved::<false, R, E, P>(r, e, intersector, rays.words(), interleaved);
         },
     );
 }
@@ -148,7 +148,7 @@ fn traverse<R: Lanes, P: Primitive>(
         // Push the children that the beam enters.
         counts::one(Event::BeamNode);
         let node = &tree.nodes[at as usize];
-        let (_, mask) = enter(e, node, beam);
+        let (_, mask) = enter(e, &node.planes, beam);
         let below = e.u32_binary(op::Or, slots, e.u32(8 * at));
         e.u32_store(e.u32_compress(below, mask), &mut stack[top..][..WIDTH]);
         top += e.bits(mask).count_ones() as usize;
@@ -161,7 +161,7 @@ fn traverse<R: Lanes, P: Primitive>(
             let (node, slot) = (stack[top] as usize / WIDTH, stack[top] as usize % WIDTH);
             let node = &tree.nodes[node];
             let child = Child(node.children[slot]);
-            let (entering, count) = packet.enter(node, slot);
+            let (entering, count) = packet.enter(&node.planes, slot);
             if count == 0 {
                 continue;
             }
@@ -180,7 +180,7 @@ fn traverse<R: Lanes, P: Primitive>(
             }
             // Intersect a block.
             counts::one(Event::BeamBlock);
-            if !packet.any_hits(intersector, intersector.rows(child.index()), entering) {
+            if !packet.any_hits(intersector, child.index(), entering, beam) {
                 return;
             }
         };

@@ -12,6 +12,7 @@ mod node;
 mod octant;
 mod order;
 mod packet;
+mod pairs;
 mod queries;
 mod rays;
 pub(crate) mod single;
@@ -56,7 +57,7 @@ impl Wide {
         };
         let collapse::Collapsed { nodes, blocks, pending } = collapse::collapse(nodes, &solidity);
         let bounds = tree.nodes.first().map_or(Aabb::EMPTY, Node::bounds);
-        let blocks = Blocks::of(prims, indices, &blocks);
+        let blocks = Blocks::of(prims, shared, indices, &blocks);
         Self { nodes, blocks, pending, bounds, traversal }
     }
 

@@ -6,6 +6,25 @@ use crate::geometry::Aabb;
 /// Maximum number of children of a node, and of primitives of a block.
 pub(crate) const WIDTH: usize = BLOCK;
 
+/// The planes of eight boxes: the lower and the upper ones along x, along y, along z.
+pub(crate) type Planes = [[f32; WIDTH]; 6];
+
+/// Planes of eight boxes that no ray enters.
+pub(crate) const NO_BOXES: Planes = {
+    const LOWER: [f32; WIDTH] = [f32::INFINITY; WIDTH];
+    const UPPER: [f32; WIDTH] = [f32::NEG_INFINITY; WIDTH];
+    [LOWER, UPPER, LOWER, UPPER, LOWER, UPPER]
+};
+
+/// Sets the box in a slot.
+pub(super) fn set_box(planes: &mut Planes, slot: usize, bounds: Aabb) {
+    let (min, max) = (bounds.min.to_array(), bounds.max.to_array());
+    for axis in 0..3 {
+        planes[2 * axis][slot] = min[axis];
+        planes[2 * axis + 1][slot] = max[axis];
+    }
+}
+
 /// A child of a node: another node, or a block of primitives.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(transparent)]
@@ -44,8 +63,7 @@ impl Child {
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(64))]
 pub(crate) struct WideNode {
-    /// Lower and upper planes along x, along y, along z.
-    pub(crate) planes: [[f32; WIDTH]; 6],
+    pub(crate) planes: Planes,
     pub(crate) children: [u32; WIDTH],
     /// The binary nodes between this one and its children, lowest first: the two members that each
     /// of them joins, slots or, from `WIDTH` on, joints.
@@ -55,15 +73,11 @@ pub(crate) struct WideNode {
 }
 
 impl WideNode {
-    pub(crate) const EMPTY: Self = {
-        const LOWER: [f32; WIDTH] = [f32::INFINITY; WIDTH];
-        const UPPER: [f32; WIDTH] = [f32::NEG_INFINITY; WIDTH];
-        Self {
-            planes: [LOWER, UPPER, LOWER, UPPER, LOWER, UPPER],
-            children: [Child::NONE.0; WIDTH],
-            joints: [[0; 2]; WIDTH - 1],
-            joint_count: 0,
-        }
+    pub(crate) const EMPTY: Self = Self {
+        planes: NO_BOXES,
+        children: [Child::NONE.0; WIDTH],
+        joints: [[0; 2]; WIDTH - 1],
+        joint_count: 0,
     };
 
     /// Returns the box of a slot.
@@ -93,11 +107,7 @@ impl WideNode {
     }
 
     pub(crate) fn set(&mut self, slot: usize, bounds: Aabb, child: Child) {
-        let (min, max) = (bounds.min.to_array(), bounds.max.to_array());
-        for axis in 0..3 {
-            self.planes[2 * axis][slot] = min[axis];
-            self.planes[2 * axis + 1][slot] = max[axis];
-        }
+        set_box(&mut self.planes, slot, bounds);
         self.children[slot] = child.0;
     }
 }

@@ -2,11 +2,12 @@
 
 use super::Wide;
 use super::beam::{Beam, extent};
-use super::blocks::{self, Row};
+use super::blocks::{self, Row, has_boxes};
 use super::counts::{self, Event};
-use super::node::{Child, WIDTH, WideNode};
+use super::node::{Child, NO_BOXES, Planes, WIDTH};
 use super::octant::{GROUPS, Octant};
-use super::rays::{ActiveMasks, GROUP, Group, Rays, lanes_mask, load, load_words, row};
+use super::pairs::Pairs;
+use super::rays::{ActiveMasks, GROUP, Group, Rays, lanes_mask, load, load_words, place, row};
 use super::step::{LeafIntersector, count, enter, ids, last_key, nearest, sorted};
 use crate::bvh::contract::{Padding, is_within, limit_behind, precedes};
 use crate::bvh::packet_slabs::{and, max, min};
@@ -21,6 +22,10 @@ const FEWEST: u32 = 12;
 /// that diverge further visit fewer nodes in a stream.
 const SPREAD: f32 = 0.5;
 
+/// The share of a register's rays from which a primitive is tested with that register; pairs of fewer
+/// rays and a primitive wait for others.
+const FULL: (usize, usize) = (3, 4);
+
 /// Scratch memory of packets, reused by the next query.
 #[derive(Debug, Default)]
 pub(super) struct PacketScratch {
@@ -31,6 +36,7 @@ pub(super) struct PacketScratch {
     enters: Vec<u32>,
     /// The rays of the packet.
     pub(super) octant: Octant,
+    pairs: Pairs,
 }
 
 impl PacketScratch {
@@ -97,7 +103,7 @@ fn traverse<R: Lanes, P: Primitive>(
 ) {
     let (e, tree) = (r.eight(), intersector.tree);
     packet_scratch.make_room(tree);
-    let PacketScratch { stack, enters, octant } = packet_scratch;
+    let PacketScratch { stack, enters, octant, pairs } = packet_scratch;
     counts::one(Event::Beam);
     let mut packet = RayPacket::new(r, rays, octant, beam.side);
     let (mut at, mut slot, mut top) = (Child::node(0), 0, 0);
@@ -105,17 +111,15 @@ fn traverse<R: Lanes, P: Primitive>(
         if at.is_block() {
             // Intersect a block, and lower the limit if any hit is nearer.
             counts::one(Event::BeamBlock);
-            let node = &tree.nodes[slot / WIDTH];
-            let is_nearer =
-                packet.closest_hits(intersector, intersector.rows(at.index()), node, slot % WIDTH);
-            if is_nearer {
+            let around = (&tree.nodes[slot / WIDTH].planes, slot % WIDTH);
+            if packet.closest_hits(intersector, at.index(), around, &beam, pairs) {
                 beam.limit = extent(e, packet.rays, packet.octant, row::LIMIT).greatest;
             }
         } else {
             // Push the children that the beam enters, the nearest last.
             counts::one(Event::BeamNode);
             let node = &tree.nodes[at.index()];
-            let (near, mask) = enter(e, node, &beam);
+            let (near, mask) = enter(e, &node.planes, &beam);
             let entered = e.bits(mask).count_ones() as usize;
             let keys = sorted(e, near, mask);
             let below = e.u32_binary(op::And, keys, e.u32(7));
@@ -135,6 +139,9 @@ fn traverse<R: Lanes, P: Primitive>(
         let last = last_key(beam.limit);
         loop {
             if top == 0 {
+                if const { has_boxes::<P>() } {
+                    pairs.test::<true, R, P>(r, intersector, packet.rays.words());
+                }
                 return;
             }
             top -= 1;
@@ -173,12 +180,16 @@ impl<'a, R: Lanes> RayPacket<'a, R> {
     fn closest_hits<P: Primitive>(
         &mut self,
         intersector: &LeafIntersector<'_, P>,
-        block: &[Row],
-        node: &WideNode,
-        slot: usize,
+        block: usize,
+        (planes, slot): (&Planes, usize),
+        beam: &Beam,
+        pairs: &mut Pairs,
     ) -> bool {
         let (r, side) = (self.r, self.side);
-        let count = count(r.eight(), block);
+        let tested = Members::of(r.eight(), intersector, block, beam, true);
+        if tested.count == 0 {
+            return false;
+        }
         let mut is_nearer = false;
         for (group, members) in self.octant.groups() {
             for from in (0..GROUP).step_by(R::N) {
@@ -187,14 +198,19 @@ impl<'a, R: Lanes> RayPacket<'a, R> {
                     continue;
                 }
                 let lanes = self.register(group, from);
-                let entering = lanes.enter(node, slot, side);
+                let entering = lanes.enter(planes, slot, side);
                 let entering = and(r, entering, r.mask_from_bits(active.into()));
                 if r.any(entering) {
-                    let is_hit = lanes.closest_hits(intersector, block, count, entering);
+                    let first = place(GROUP * group + from);
+                    let to_test = (&mut *pairs, first);
+                    let is_hit = lanes.closest_hits(intersector, &tested, side, entering, to_test);
                     counts::some(Event::Nearer, is_hit.into());
                     is_nearer |= is_hit;
                 }
             }
+        }
+        if const { has_boxes::<P>() } {
+            is_nearer |= pairs.test_full(r, intersector, self.rays.words());
         }
         is_nearer
     }
@@ -202,7 +218,7 @@ impl<'a, R: Lanes> RayPacket<'a, R> {
     /// Returns the masks of the rays that enter the box in a slot of a node within their limits,
     /// and how many they are.
     #[inline(always)]
-    pub(super) fn enter(&mut self, node: &WideNode, slot: usize) -> ([u32; GROUPS], u32) {
+    pub(super) fn enter(&mut self, planes: &Planes, slot: usize) -> ([u32; GROUPS], u32) {
         let (r, side) = (self.r, self.side);
         let (mut entering, mut count) = ([0; GROUPS], 0);
         for (entering, (group, members)) in entering.iter_mut().zip(self.octant.groups()) {
@@ -210,7 +226,7 @@ impl<'a, R: Lanes> RayPacket<'a, R> {
                 let active = members >> from & lanes_mask::<R>();
                 if active != 0 {
                     let lanes = self.register(group, from);
-                    let hits = r.bits(lanes.enter(node, slot, side)) as u32 & active;
+                    let hits = r.bits(lanes.enter(planes, slot, side)) as u32 & active;
                     *entering |= hits << from;
                     count += hits.count_ones();
                 }
@@ -225,11 +241,15 @@ impl<'a, R: Lanes> RayPacket<'a, R> {
     pub(super) fn any_hits<P: Primitive>(
         &mut self,
         intersector: &LeafIntersector<'_, P>,
-        block: &[Row],
+        block: usize,
         entering: [u32; GROUPS],
+        beam: &Beam,
     ) -> bool {
-        let r = self.r;
-        let count = count(r.eight(), block);
+        let (r, side) = (self.r, self.side);
+        let tested = Members::of(r.eight(), intersector, block, beam, false);
+        if tested.count == 0 {
+            return true;
+        }
         let mut hits = [0; GROUPS];
         for ((hits, entering), (group, _)) in
             hits.iter_mut().zip(entering).zip(self.octant.groups())
@@ -239,11 +259,65 @@ impl<'a, R: Lanes> RayPacket<'a, R> {
                 if active != 0 {
                     let active = r.mask_from_bits(active.into());
                     let lanes = self.register(group, from);
-                    *hits |= lanes.any_hits(intersector, block, count, active) << from;
+                    *hits |= lanes.any_hits(intersector, &tested, side, active) << from;
                 }
             }
         }
         self.octant.leave(hits)
+    }
+}
+
+/// The primitives of a block that a packet tests.
+struct Members<'a> {
+    block: &'a [Row],
+    /// The index of the block.
+    index: usize,
+    /// The boxes of the primitives, if they [have boxes](has_boxes).
+    boxes: &'a Planes,
+    /// The slots of those whose boxes the packet's beam enters, the nearest last.
+    slots: [u32; WIDTH],
+    count: usize,
+}
+
+impl<'a> Members<'a> {
+    /// Returns the primitives of a block that the rays of a beam may hit; in their order along the
+    /// beam if that matters.
+    #[inline(always)]
+    fn of<E: Lanes, P: Primitive>(
+        e: E,
+        intersector: &'a LeafIntersector<'_, P>,
+        index: usize,
+        beam: &Beam,
+        is_ordered: bool,
+    ) -> Self {
+        let block = intersector.rows(index);
+        if const { !has_boxes::<P>() } {
+            let count = count(e, block);
+            return Self { block, index, boxes: &NO_BOXES, slots: [0; WIDTH], count };
+        }
+        let boxes = intersector.tree.blocks.boxes(index);
+        let (near, mask) = enter(e, boxes, beam);
+        let mut slots = [0; WIDTH];
+        if is_ordered {
+            e.u32_store(sorted(e, near, mask), &mut slots);
+        } else {
+            let all = e.u32_from_fn(
+                #[inline(always)]
+                |i| i as u32,
+            );
+            e.u32_store(e.u32_compress(all, mask), &mut slots);
+        }
+        Self { block, index, boxes, slots, count: e.bits(mask).count_ones() as usize }
+    }
+
+    /// Returns the slot of the primitive that is tested next, after `k` others.
+    #[inline(always)]
+    fn slot<P: Primitive>(&self, k: usize) -> usize {
+        if const { has_boxes::<P>() } {
+            self.slots[(self.count - 1 - k) % WIDTH] as usize % WIDTH
+        } else {
+            k
+        }
     }
 }
 
@@ -278,14 +352,14 @@ impl<R: Lanes> Register<'_, R> {
 
     /// Returns the mask of the rays that enter a box within their limits.
     #[inline(always)]
-    fn enter(&self, node: &WideNode, slot: usize, side: [usize; 3]) -> R::Mask {
+    fn enter(&self, planes: &Planes, slot: usize, side: [usize; 3]) -> R::Mask {
         counts::one(Event::RegisterBox);
         let r = self.r;
         let mut near = self.float(row::T_MIN);
         let mut far = self.float(row::LIMIT);
         for (axis, side) in side.into_iter().enumerate() {
-            let first = r.f32(node.planes[2 * axis + (side & 1)][slot % WIDTH]);
-            let last = r.f32(node.planes[2 * axis + 1 - (side & 1)][slot % WIDTH]);
+            let first = r.f32(planes[2 * axis + (side & 1)][slot % WIDTH]);
+            let last = r.f32(planes[2 * axis + 1 - (side & 1)][slot % WIDTH]);
             let inverse = self.float(row::INVERSE + axis);
             near = max(r, near, r.f32_mul_add_fast(first, inverse, self.float(row::FIRST + axis)));
             far = min(r, far, r.f32_mul_add_fast(last, inverse, self.float(row::LAST + axis)));
@@ -309,14 +383,22 @@ impl<R: Lanes> Register<'_, R> {
     fn any_hits<P: Primitive>(
         mut self,
         intersector: &LeafIntersector<'_, P>,
-        block: &[Row],
-        count: usize,
+        members: &Members<'_>,
+        side: [usize; 3],
         mut active: R::Mask,
     ) -> u32 {
         let (r, m) = (self.r, self.m);
-        let (ray, queried) = (self.ray(), active);
+        let (ray, queried, block) = (self.ray(), active, members.block);
         counts::one(Event::RegisterBlock);
-        for i in 0..count {
+        for k in 0..members.count {
+            let i = members.slot::<P>(k);
+            let mut tested = active;
+            if const { has_boxes::<P>() } {
+                tested = and(r, active, self.enter(members.boxes, i % WIDTH, side));
+                if !r.any(tested) {
+                    continue;
+                }
+            }
             counts::one(Event::RegisterPrimitive);
             let prim = blocks::read::<_, P>(
                 m,
@@ -324,12 +406,12 @@ impl<R: Lanes> Register<'_, R> {
                 |word| r.u32(block[word].0[i % WIDTH]),
             );
             let record = m.with_active(
-                active,
+                tested,
                 #[inline(always)]
                 || P::intersect_among_on(m, intersector.kinds, prim, ray, intersector.shared),
             );
             let hit = P::Hit::hit_on(record);
-            let hits = and(r, active, is_within::on(m, hit, ray).0);
+            let hits = and(r, tested, is_within::on(m, hit, ray).0);
             if r.any(hits) {
                 active = and(r, active, r.mask_not(hits));
                 if !r.any(active) {
@@ -348,17 +430,34 @@ impl<R: Lanes> Register<'_, R> {
     fn closest_hits<P: Primitive>(
         mut self,
         intersector: &LeafIntersector<'_, P>,
-        block: &[Row],
-        count: usize,
+        members: &Members<'_>,
+        side: [usize; 3],
         active: R::Mask,
+        (pairs, first): (&mut Pairs, u32),
     ) -> bool {
         let (r, m) = (self.r, self.m);
-        let (ray, block_ids) = (self.ray(), ids(block));
+        let (ray, block) = (self.ray(), members.block);
+        let block_ids = ids(block);
         let mut is_nearer = false;
         counts::one(Event::RegisterBlock);
         // A function shared with `any_hits` would make these tests up to a tenth slower. Without
         // bounds checks inside, terms that depend only on the rays are hoisted out of the loop.
-        for i in 0..count {
+        for k in 0..members.count {
+            let i = members.slot::<P>(k);
+            let mut tested = active;
+            if const { has_boxes::<P>() } {
+                tested = and(r, active, self.enter(members.boxes, i % WIDTH, side));
+                let count = r.bits(tested).count_ones() as usize;
+                if count == 0 {
+                    continue;
+                }
+                // Pairs of different primitives may be of different kinds, which take turns.
+                if P::KINDS == 1 && FULL.1 * count < FULL.0 * R::N {
+                    let primitive = (WIDTH * members.index + i % WIDTH) as u32;
+                    pairs.add_rays(r, first, primitive, tested);
+                    continue;
+                }
+            }
             counts::one(Event::RegisterPrimitive);
             let prim = blocks::read::<_, P>(
                 m,
@@ -366,14 +465,14 @@ impl<R: Lanes> Register<'_, R> {
                 |word| r.u32(block[word].0[i % WIDTH]),
             );
             let record = m.with_active(
-                active,
+                tested,
                 #[inline(always)]
                 || P::intersect_among_on(m, intersector.kinds, prim, ray, intersector.shared),
             );
             let hit = P::Hit::hit_on(record);
             let best = self.float(row::T);
             let t_max = F(min(r, ray.t_max.0, best));
-            let hits = and(r, active, is_within::on(m, hit, RayOn { t_max, ..ray }).0);
+            let hits = and(r, tested, is_within::on(m, hit, RayOn { t_max, ..ray }).0);
             if !r.any(hits) {
                 continue;
             }

@@ -158,7 +158,7 @@ fn traverse<E: Lanes, P: Primitive>(
                 _ if best.is_hit => best.t,
                 _ => f32::INFINITY,
             };
-            let (hit, mask) = intersector.intersect(e, block, on, best_t);
+            let (hit, mask) = intersector.intersect(e, at.index(), (on, &beam), best_t);
             let mut hits = e.bits(mask);
             let mut is_nearer = false;
             if wanted == Wanted::Any && hits != 0 {
@@ -191,7 +191,7 @@ fn traverse<E: Lanes, P: Primitive>(
             // Push the children that the ray enters; any-hit queries need no order.
             counts::one(Event::Node);
             let node = &tree.nodes[at.index()];
-            let (near, mask) = enter(e, node, &beam);
+            let (near, mask) = enter(e, &node.planes, &beam);
             let entered = e.bits(mask);
             if entered != 0 {
                 let children = words(e, &node.children);

@@ -1,14 +1,14 @@
 //! Steps of a traversal: one ray against eight boxes or eight primitives.
 
 use super::Wide;
-use super::blocks::{self, Row};
-use super::node::{WIDTH, WideNode};
+use super::blocks::{self, Row, has_boxes};
+use super::node::{Planes, WIDTH};
 use super::rays::{RayWords, row};
 use crate::bvh::Part;
 use crate::bvh::contract::is_within;
-use crate::bvh::packet_slabs::{max, min};
+use crate::bvh::packet_slabs::{and, max, min};
 use crate::geometry::{HitOn, HitRecord, Kinds, Primitive, RayOn};
-use crate::machine::{F, Lanes, Packet, Slice, op};
+use crate::machine::{F, Lanes, Packet, Slice, Value, op};
 
 /// The slabs of box tests: of a ray, or of a beam.
 pub(super) trait Slabs: Copy {
@@ -45,25 +45,25 @@ impl Slabs for RayWords<'_> {
     }
 }
 
-/// Returns the entry distances of the children of a node, and the mask of those that are entered
-/// within the limit.
+/// Returns the entry distances of eight boxes, and the mask of those that are entered within the
+/// limit.
 #[inline(always)]
-pub(super) fn enter<E: Lanes>(e: E, node: &WideNode, ray: impl Slabs) -> (E::F32, E::Mask) {
-    let [near_x, far_x] = slab(e, node, ray, 0);
-    let [near_y, far_y] = slab(e, node, ray, 1);
-    let [near_z, far_z] = slab(e, node, ray, 2);
+pub(super) fn enter<E: Lanes>(e: E, planes: &Planes, ray: impl Slabs) -> (E::F32, E::Mask) {
+    let [near_x, far_x] = slab(e, planes, ray, 0);
+    let [near_y, far_y] = slab(e, planes, ray, 1);
+    let [near_z, far_z] = slab(e, planes, ray, 2);
     let (t_min, limit) = (e.f32(ray.t_min()), e.f32(ray.limit()));
     let near = max(e, max(e, near_x, near_y), max(e, near_z, t_min));
     let far = min(e, min(e, far_x, far_y), min(e, far_z, limit));
     (near, e.f32_compare(op::Le, near, far))
 }
 
-/// Returns the distances of the near and the far plane of each child along an axis.
+/// Returns the distances of the near and the far plane of each box along an axis.
 #[inline(always)]
-fn slab<E: Lanes>(e: E, node: &WideNode, ray: impl Slabs, axis: usize) -> [E::F32; 2] {
+fn slab<E: Lanes>(e: E, planes: &Planes, ray: impl Slabs, axis: usize) -> [E::F32; 2] {
     let side = ray.side(axis) & 1;
-    let near = floats(e, &node.planes[2 * axis + side]);
-    let far = floats(e, &node.planes[2 * axis + 1 - side]);
+    let near = floats(e, &planes[2 * axis + side]);
+    let far = floats(e, &planes[2 * axis + 1 - side]);
     let ([scale, first], [last_scale, last]) = (ray.near(axis), ray.far(axis));
     [
         e.f32_mul_add_fast(near, e.f32(scale), e.f32(first)),
@@ -141,26 +141,41 @@ impl<P: Primitive> LeafIntersector<'_, P> {
     }
 
     /// Intersects a ray with the primitives of a block; returns the hits, and the mask of those
-    /// that are within the ray's range and not beyond `best`.
+    /// that are within the ray's range and not beyond `best`. `slabs` are those of the ray.
     #[inline(always)]
     pub(super) fn intersect<E: Lanes>(
         &self,
         e: E,
-        block: &[Row],
-        ray: RayOn<Packet<E>>,
+        block: usize,
+        (ray, slabs): (RayOn<Packet<E>>, impl Slabs),
         best: f32,
     ) -> (HitOn<Packet<E>>, E::Mask) {
         let m = &Packet::new(e);
+        let entered = if const { has_boxes::<P>() } {
+            let (_, entered) = enter(e, self.tree.blocks.boxes(block), slabs);
+            if !e.any(entered) {
+                return (HitOn::zero(m), entered);
+            }
+            Some(entered)
+        } else {
+            None
+        };
+        let block = self.rows(block);
         let prim = blocks::read::<_, P>(
             m,
             #[inline(always)]
             |word| words(e, &block[word].0),
         );
-        let record = P::intersect_among_on(m, self.kinds, prim, ray, self.shared);
+        let record = m.with_active(
+            entered.unwrap_or_else(|| m.active()),
+            #[inline(always)]
+            || P::intersect_among_on(m, self.kinds, prim, ray, self.shared),
+        );
         let hit = P::Hit::hit_on(record);
         // In this order of operands a range with a NaN limit is empty.
         let t_max = F(min(e, ray.t_max.0, e.f32(best)));
-        (hit, is_within::on(m, hit, RayOn { t_max, ..ray }).0)
+        let within = is_within::on(m, hit, RayOn { t_max, ..ray }).0;
+        (hit, entered.map_or(within, |entered| and(e, within, entered)))
     }
 }
 

@@ -7,9 +7,10 @@
 
 use core::ops::Range;
 
-use super::blocks::Row;
+use super::blocks::{Row, has_boxes};
 use super::counts::{self, Event};
 use super::node::{Child, WIDTH, WideNode};
+use super::pairs::{NEARER, Pairs};
 use super::rays::{GROUP, Rays, lanes_of, place, ray_at, ray_at_mut, row};
 use super::step::{LeafIntersector, enter, ids, last_key, sorted, words};
 use crate::bvh::contract::{limit_behind, precedes};
@@ -28,6 +29,7 @@ pub(super) struct RayStream {
     at_nodes: Vec<u32>,
     /// The places of the rays that are at blocks.
     at_blocks: Vec<u32>,
+    pairs: Pairs,
 }
 
 /// Groups per stream: the stacks of more rays do not fit into the cache.
@@ -57,6 +59,7 @@ pub(super) struct Interleaved<'a> {
     enters: &'a mut [u32],
     nodes: List<'a>,
     blocks: List<'a>,
+    pairs: &'a mut Pairs,
     /// The most pending children of each ray.
     pending: u32,
 }
@@ -117,6 +120,7 @@ impl RayStream {
             enters: &mut self.enters,
             nodes: List { places: &mut self.at_nodes, len: 0 },
             blocks: List { places: &mut self.at_blocks, len: 0 },
+            pairs: &mut self.pairs,
             pending: pending as u32,
         }
     }
@@ -171,7 +175,7 @@ impl Interleaved<'_> {
         counts::one(Event::Node);
         let words_of = ray_at(all, ray);
         let top = words_of.word(row::TOP);
-        let (near, mask) = enter(e, node, words_of);
+        let (near, mask) = enter(e, &node.planes, words_of);
         let children = words(e, &node.children);
         debug_assert!(top + e.bits(mask).count_ones() <= words_of.word(row::BOTTOM) + self.pending);
         if CLOSEST {
@@ -182,6 +186,47 @@ impl Interleaved<'_> {
             e.u32_store(e.u32_compress(children, mask), self.stack(top));
         }
         self.pop_if(true, all, ray, top + e.bits(mask).count_ones());
+    }
+
+    /// Tests the rays at blocks against the boxes of the primitives, and then those that they enter.
+    #[inline(always)]
+    fn test_boxes<const CLOSEST: bool, R: Lanes, E: Lanes, P: Primitive>(
+        &mut self,
+        r: R,
+        e: E,
+        intersector: &LeafIntersector<'_, P>,
+        all: &mut [u32],
+    ) {
+        let count = core::mem::take(&mut self.blocks.len);
+        let mut begin = 0;
+        while begin < count {
+            // Collect pairs.
+            let mut end = begin;
+            while end < count && !self.pairs.is_full() {
+                counts::one(Event::Block);
+                let ray = self.blocks.places[end];
+                let words_of = ray_at(all, ray);
+                let block = Child(words_of.word(row::AT)).index();
+                let (_, mask) = enter(e, intersector.tree.blocks.boxes(block), words_of);
+                self.pairs.add(e, ray, block, mask);
+                end += 1;
+            }
+            self.pairs.test::<CLOSEST, R, P>(r, intersector, all);
+            // Go on, and cull the stacks of rays with a nearer hit.
+            for i in begin..end {
+                let ray = self.blocks.places[i];
+                let words_of = ray_at(all, ray);
+                let (mut top, found) = (words_of.word(row::TOP), words_of.word(row::FOUND));
+                if CLOSEST && found == NEARER {
+                    counts::one(Event::Nearer);
+                    let (bottom, limit) = (words_of.word(row::BOTTOM), words_of.float(row::LIMIT));
+                    top = self.drop_beyond(e, bottom, top, limit);
+                    ray_at_mut(all, ray).set(row::FOUND, 1);
+                }
+                self.pop_if(CLOSEST || found == 0, all, ray, top);
+            }
+            begin = end;
+        }
     }
 
     /// Removes the children that a ray enters beyond `limit` from its stack; returns the new top.
@@ -213,7 +258,8 @@ impl Interleaved<'_> {
 /// Traces the active rays from `entry`, or from the root: finds the least hit of each with
 /// `CLOSEST`, if it precedes the hit that the ray has already, else whether there is any.
 #[inline(always)]
-pub(super) fn run<const CLOSEST: bool, E: Lanes, P: Primitive>(
+pub(super) fn run<const CLOSEST: bool, R: Lanes, E: Lanes, P: Primitive>(
+    r: R,
     e: E,
     intersector: &LeafIntersector<'_, P>,
     entry: Option<&WideNode>,
@@ -233,14 +279,15 @@ pub(super) fn run<const CLOSEST: bool, E: Lanes, P: Primitive>(
                 interleaved.step::<CLOSEST, E>(e, entry, all, ray);
             }
         }
-        trace_interleaved::<CLOSEST, E, P>(e, intersector, all, interleaved);
+        trace_interleaved::<CLOSEST, R, E, P>(r, e, intersector, all, interleaved);
     }
 }
 
 /// Traces the rays of a stream from their current children. A function of its own, which [`run`]
 /// and the hybrid traversal share.
 #[inline(never)]
-pub(super) fn trace_interleaved<const CLOSEST: bool, E: Lanes, P: Primitive>(
+pub(super) fn trace_interleaved<const CLOSEST: bool, R: Lanes, E: Lanes, P: Primitive>(
+    r: R,
     e: E,
     intersector: &LeafIntersector<'_, P>,
     all: &mut [u32],
@@ -258,14 +305,19 @@ pub(super) fn trace_interleaved<const CLOSEST: bool, E: Lanes, P: Primitive>(
                     interleaved.step::<CLOSEST, E>(e, node, all, ray);
                 }
                 // Rays at blocks.
+                if const { has_boxes::<P>() } {
+                    interleaved.test_boxes::<CLOSEST, R, E, P>(r, e, intersector, all);
+                    continue;
+                }
                 for i in 0..core::mem::take(&mut interleaved.blocks.len) {
                     counts::one(Event::Block);
                     let ray = interleaved.blocks.places[i];
                     let words_of = ray_at(all, ray);
                     let mut top = words_of.word(row::TOP);
-                    let block = intersector.rows(Child(words_of.word(row::AT)).index());
+                    let block = Child(words_of.word(row::AT)).index();
                     let (ray_on, best) = (words_of.ray_on(&Packet::new(e)), words_of.float(row::T));
-                    let (hit, mask) = intersector.intersect(e, block, ray_on, best);
+                    let (hit, mask) = intersector.intersect(e, block, (ray_on, words_of), best);
+                    let block = intersector.rows(block);
                     let is_hit = e.any(mask);
                     // Update the ray's hit, and cull its stack if that is nearer.
                     if !CLOSEST {

@@ -5,6 +5,7 @@ use core::mem::{swap, take};
 
 use fearless_simd::Level;
 
+use super::blocks::has_boxes;
 use super::entry;
 use super::hybrid;
 use super::order::{Portions, Sequence};
@@ -263,7 +264,14 @@ fn each_part<const CLOSEST: bool, R: Lanes, P: Primitive>(
                         let is_forced = tree.traversal == Traversal::Packets;
                         packet::closest_hit(r, &intersector, rays, packet_scratch, root, is_forced);
                     }
-                    stream::run::<true, _, _>(Entered::new(e), &intersector, None, rays, stream);
+                    stream::run::<true, _, _, _>(
+                        r,
+                        Entered::new(e),
+                        &intersector,
+                        None,
+                        rays,
+                        stream,
+                    );
                     continue;
                 }
                 if const { P::IS_SHORT } {
@@ -292,6 +300,8 @@ fn any<R: Lanes, E: Lanes, P: Primitive>(
     let Scratch { rays, stream, .. } = &mut *scratch;
     let count = rays.activate_all();
     let sequence = match intersector.tree.traversal {
+        // Streams test pairs of rays and primitives, which fills registers.
+        Traversal::Auto if const { has_boxes::<P>() } => None,
         // Most unbounded rays are occluded soon, by different primitives.
         Traversal::Auto => (count >= hybrid::FEWEST && entry::are_bounded(r.eight(), rays))
             .then_some(Sequence::ByDirection),
@@ -304,7 +314,7 @@ fn any<R: Lanes, E: Lanes, P: Primitive>(
     } else {
         rays.prepare(r, root, padding);
         let entry = entry::of(r.eight(), intersector.tree, rays, root, padding);
-        stream::run::<false, _, _>(e, intersector, entry.as_ref(), rays, stream);
+        stream::run::<false, _, _, _>(r, e, intersector, entry.as_ref(), rays, stream);
     }
 }
 
