@@ -582,6 +582,10 @@ mod tests {
         let (a, b, c) = (a?, b?, c?);
         let [a, b, c] = [&a, &b, &c].map(|grid| grid.named_view("grid"));
         assert!(a.is_same(&a) && !a.is_same(&b) && !a.is_same(&c));
+        // Nor do equal layouts make one grid of two.
+        let other = Grid::new(vec![4.0f32; 4], UVec3::new(4, 1, 1), GridConfig::new())?;
+        let other = other.named_view("grid");
+        assert!(a.layout == other.layout && !a.is_same(&other) && other.is_same(&other));
         Ok(())
     }
 

@@ -1,12 +1,10 @@
-//! What boxes, trees and shapes say of themselves, against plain arithmetic.
-
-use std::error::Error;
+//! Shapes: their points, samples, coordinates and errors.
 
 use glam::DVec3;
 use raydsl::prelude::*;
-use raydsl::volume::{Grid, GridConfig};
-use raydsl::{assert_variants_agree, kernel};
 use raydsl_tests::rng::Rng;
+
+use super::Chest;
 
 #[primitive(cylinder(p0, p1, radius))]
 struct Rod {
@@ -20,18 +18,6 @@ struct Pipe {
     p0: Vec3,
     p1: Vec3,
     radius: f32,
-}
-
-#[primitive(sphere(center, radius))]
-struct Ball {
-    center: Vec3,
-    radius: f32,
-}
-
-#[primitive(cuboid(min, max))]
-struct Chest {
-    min: Vec3,
-    max: Vec3,
 }
 
 #[primitive(plane(normal, offset))]
@@ -48,25 +34,6 @@ fn half_areas_are_sums_of_three_faces() {
     let flat = Aabb::new(Vec3::ZERO, vec3(4.0, 0.0, 0.5));
     assert_eq!(flat.half_area(), 2.0);
     assert_eq!(Aabb::EMPTY.half_area(), 0.0);
-}
-
-#[test]
-fn trees_say_what_they_are() -> Result<(), Box<dyn Error>> {
-    let ball = |i: u16| Ball { center: Vec3::X * f32::from(i), radius: 0.4 };
-    let balls: Vec<Ball> = (0..20).map(ball).collect();
-    let binary = Bvh::build(&balls)?;
-    let wide = |min_wide_size| {
-        Bvh::build_wide(&balls, &[], &BuildConfig { min_wide_size, ..BuildConfig::default() })
-    };
-    let (small, wide) = (wide(21)?, wide(20)?);
-    assert!(!binary.is_wide() && !small.is_wide());
-    assert_eq!(wide.is_wide(), raydsl::testing::can_run(Variant::Packet8, "wide trees"));
-    let none = Bvh::build(&balls[..0])?;
-    for (tree, count) in [(binary, 20), (wide, 20), (none, 0)] {
-        let detached = tree.detach();
-        assert_eq!((detached.len(), detached.is_empty()), (count, count == 0));
-    }
-    Ok(())
 }
 
 /// The second coordinate of a tube and of a cylinder is the height of the hit over the first end.
@@ -193,20 +160,4 @@ fn samples_of_boxes_are_on_their_faces() {
         assert!(to_face <= point.error && point.error < 1e-5, "{point:?}");
         assert!(p.cmpge(chest.min - 1e-6).all() && p.cmple(chest.max + 1e-6).all());
     }
-}
-
-/// Two grids of one placement and other values are two buffers of a device.
-#[test]
-fn grids_of_one_layout_are_told_apart() {
-    let size = uvec3(3, 4, 5);
-    let values = |f: fn(f32) -> f32| (0..60u8).map(|i| f(f32::from(i))).collect::<Vec<f32>>();
-    let (rising, falling) = (values(|i| i * 0.5), values(|i| 9.0 - i * i * 0.01));
-    let first = Grid::new(rising, size, GridConfig::new()).expect("a grid");
-    let second = Grid::new(falling, size, GridConfig::new()).expect("a grid");
-    let kernel = kernel!(|p: Vec3| first.value(p) * 3.0 - second.value(p));
-    let mut rng = Rng::of("grids");
-    let inputs: Vec<(Vec3,)> = (0..100).map(|_| (rng.point(1.0) + 1.0,)).collect();
-    assert_variants_agree!(&kernel, &inputs);
-    let off = |p: Vec3| (kernel.call((p,)) - (first.value(p) * 3.0 - second.value(p))).abs();
-    assert!(inputs.iter().all(|(p,)| off(*p) < 1e-5));
 }
