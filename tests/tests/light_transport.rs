@@ -163,9 +163,12 @@ fn assert_known(name: &str, known: &Known<'_>) {
     let &Known { dome, floor, lights: list, sky, paints, bounces, ray, exact, options } = known;
     let scene = Dome { dome, floor };
     let lights = Lights::new(list, cube()).expect("finite powers").with_environment(sky);
-    // Roulette from the first bounce on, the usual one, and none.
-    for roulette in [0, 3, u32::MAX] {
+    // Roulette from the first bounce on, the usual one, one that never begins, and none.
+    let some: Vec<(u32, u32)> = (0..500).map(|i| (i, 9)).collect();
+    let mut last = Vec::new();
+    for (roulette, without_roulette) in [(0, false), (3, false), (u32::MAX, false), (0, true)] {
         let limits = PathLimits { bounces, roulette };
+        let options = PathOptions { without_roulette, ..options };
         let kernel = kernel!(|i: u32, seed: u32| {
             let surface = |hit: Hit, _point: ShadingPoint| {
                 if hit.inst_id == 0 { paints[0] } else { paints[1] }
@@ -175,6 +178,12 @@ fn assert_known(name: &str, known: &Known<'_>) {
                 .color
                 .x
         });
+        if without_roulette {
+            // Each path is that of roulette that never begins.
+            assert_eq!(run(&kernel, Variant::widest(), &some), last, "{name}, {options:?}");
+            continue;
+        }
+        last = run(&kernel, Variant::widest(), &some);
         assert_mean(&format!("{name}, roulette {roulette}, {options:?}"), &kernel, exact);
     }
 }

@@ -6,6 +6,7 @@ use super::direct::{Scattering, is_bright, next_3d, scattered_light, scattering_
 use super::masks::{closest_surface, is_occluded};
 use super::path_tracing::{
     LightSampling, PathLimits, PathOptions, PathSample, hit_density, seen_first, survival,
+    survival_of_all,
 };
 use crate::bsdf::{Bsdf, BsdfSample, Material};
 use crate::geometry::{Hit, Ray, SurfacePoint};
@@ -145,7 +146,11 @@ pub fn volume_path<S: Scene + ?Sized, L: Light + MachineType, B: Bsdf + Material
 
         // Go on with the probability of what is left.
         throughput *= next.weight;
-        let chance = survival(throughput, bounce, limits, &mut sampler);
+        let chance = if options.without_roulette {
+            survival_of_all(throughput, &mut sampler)
+        } else {
+            survival(throughput, bounce, limits, &mut sampler)
+        };
         if chance <= 0.0 {
             break;
         }

@@ -52,7 +52,8 @@ fn with_light(color: Vec4, light: Vec3) -> Vec4 {
 pub struct PathLimits {
     /// How often light is scattered at most: 0 is emitted light alone, 1 direct light besides.
     pub bounces: u32,
-    /// The bounce from which on Russian roulette ends paths: 3 unless set; `u32::MAX` is none.
+    /// The bounce from which on Russian roulette ends paths: 3 unless set; `u32::MAX` is none, and
+    /// [`PathOptions::without_roulette`] leaves out its code too.
     pub roulette: u32,
 }
 
@@ -104,12 +105,15 @@ pub struct PathOptions {
     pub masks: bool,
     /// How light is found.
     pub lights: LightSampling,
+    /// Whether no path ends by chance: [`PathLimits::roulette`] is not read, and a kernel has no code
+    /// of it. Results are those of `u32::MAX` there.
+    pub without_roulette: bool,
 }
 
 impl PathOptions {
     /// Creates options with everything off.
     pub const fn new() -> Self {
-        Self { masks: false, lights: LightSampling::Weighted }
+        Self { masks: false, lights: LightSampling::Weighted, without_roulette: false }
     }
 }
 
@@ -331,7 +335,11 @@ pub fn path_step<S: Scene + ?Sized, L: Light + MachineType, B: Bsdf + Material +
     let next: BsdfSample = material.sample(at.wo, next_3d(&mut sampler));
     let direction = at.frame.to_world(next.wi);
     throughput *= next.weight;
-    let chance = survival(throughput, bounce, limits, &mut sampler);
+    let chance = if options.without_roulette {
+        survival_of_all(throughput, &mut sampler)
+    } else {
+        survival(throughput, bounce, limits, &mut sampler)
+    };
     let next = PathState {
         ray: at.point.ray(direction),
         from: at.point,
@@ -367,6 +375,16 @@ pub(super) fn survival(
         chance = if sampler.next_1d() < going_on { going_on } else { 0.0 };
     }
     chance
+}
+
+/// Returns what [`survival`] does without roulette: 1, or 0 for a path that brings nothing more.
+#[kernel]
+#[inline]
+pub(super) fn survival_of_all(throughput: Vec3, sampler: &mut Sampler) -> f32 {
+    // The dimension is left out here, too.
+    sampler.dimension = sampler.dimension.wrapping_add(1);
+    let brightest = max(throughput.x, max(throughput.y, throughput.z));
+    if brightest <= 0.0 { 0.0 } else { 1.0 }
 }
 
 /// Returns the density of a direction against which samples of lights are weighted where a ray hits a
