@@ -2,6 +2,7 @@
 
 use core::marker::PhantomData;
 
+use super::allocation::{Allocation, BLOCK};
 use super::shot::{Frame, Pass, Shot};
 use super::{FilmArgs, Radiance, Sampling};
 use crate::camera::Camera;
@@ -44,13 +45,37 @@ impl<A: FilmArgs, R: Radiance> Kernel<'_, A, R> {
         sampling: &Sampling,
         (width, height): (u32, u32),
     ) -> Recording {
+        self.recorded_pass(camera, sampling, (width, height), None)
+    }
+
+    /// Records what a device runs for each pixel of a pass in which each block of 16 by 16 pixels has a
+    /// number of samples of its own, as passes of [`Until::adaptive`](super::Until::adaptive) have after
+    /// the pilots. The numbers are data: here each is that of `sampling`.
+    pub fn record_adaptive_pass<C: Camera>(
+        &self,
+        camera: &C,
+        sampling: &Sampling,
+        (width, height): (u32, u32),
+    ) -> Recording {
+        let blocks = width.div_ceil(BLOCK) as usize * height.div_ceil(BLOCK) as usize;
+        let allocation = Allocation::new(width, vec![sampling.planned; blocks]);
+        self.recorded_pass(camera, sampling, (width, height), Some(&allocation))
+    }
+
+    fn recorded_pass<C: Camera>(
+        &self,
+        camera: &C,
+        sampling: &Sampling,
+        (width, height): (u32, u32),
+        allocation: Option<&Allocation>,
+    ) -> Recording {
         recorded(&Pass {
             rays: camera.begin_frame(width, height),
             kernel: self,
             sampling: *sampling,
             first: 0,
             count: sampling.planned,
-            allocation: None,
+            allocation,
             kept: PhantomData::<fn()>,
         })
     }

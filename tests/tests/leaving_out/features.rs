@@ -4,7 +4,8 @@
 pub(crate) struct Feature {
     pub(crate) name: &'static str,
     /// What a program with it has: source files of kernels, and names of functions, structs, bindings,
-    /// numbers and constants, which may begin or end with `*`.
+    /// numbers and constants, which may begin or end with `*`; a trace with a space is a piece of the
+    /// text, for arms of one function.
     pub(crate) traces: &'static [&'static str],
 }
 
@@ -41,12 +42,14 @@ pub(crate) const FEATURES: &[Feature] = &[
     feature("direct light", &["integrators/direct.rs", "sampling/heuristics.rs"]),
     feature("path", &["integrators/path_tracing.rs", "PathLimits"]),
     feature("roulette", &["survival"]),
+    feature("holes", &["integrators/masks.rs"]),
     feature("channels", &["Luminous_albedo", "StoredPathSample"]),
     feature("samples", &["sampling/sampler.rs", "sampling/hash.rs", "sampling/rng.rs", "Sampler"]),
     feature("directions", &["sampling/warp/*", "sampling/frame.rs"]),
     feature("volume", &["volume/integrator.rs", "volume/light.rs", "VolumeLight"]),
     feature("grid", &["volume/voxel.rs", "volume/sample.rs", "*_voxels"]),
     feature("transfer function", &["volume/transfer.rs", "*_knots", "*_bins", "TransferKnot"]),
+    feature("2-D transfer function", &["volume/volume_2d.rs", "volume_samples"]),
     feature("empty space", &["volume/walk.rs", "*_majorants", "CellWalk"]),
     feature("steps", &["volume/march.rs", "Euler"]),
     feature("exact cells", &["volume/exact.rs", "volume/cubic.rs", "ExactCell"]),
@@ -61,7 +64,20 @@ pub(crate) const FEATURES: &[Feature] = &[
     feature("nearest", &["nearest_texel"]),
     feature("linear", &["linear_image", "linear_row", "Pair"]),
     feature("cubic", &["cubic_image", "cubic_row", "Weights"]),
+    feature("repeat", &["return c - floor(c);", "select(i, i + n, "]),
+    feature("mirror", &["2i * n - 1i - i"]),
+    feature("clamp", &["select(i, 0i, "]),
+    feature("border", &["*_border"]),
     feature("sRGB", &["texture/color.rs", "srgb_to_linear"]),
+    feature("camera", &["camera/*", "render/shot.rs"]),
+    feature(
+        "film",
+        &["render/moments.rs", "Moments", "render/pixel_sampler.rs", "render/radiance.rs"],
+    ),
+    feature(
+        "adaptive samples",
+        &["render/allocation.rs", "samples_of_blocks", "columns_of_blocks"],
+    ),
 ];
 
 /// Files whose kernels several features have in common: rays, boxes, points, elementary functions.

@@ -15,6 +15,7 @@ use super::scenes::{self, Scene};
 /// What a scene's program has.
 struct Found {
     scene: Scene,
+    text: String,
     program: Program,
     /// The names that it declares, and the source files of its functions.
     traces: BTreeSet<String>,
@@ -25,7 +26,8 @@ struct Found {
 impl Found {
     fn of(scene: Scene) -> Result<Self, Box<dyn Error>> {
         let recording = (scene.record)()?;
-        let program = Program::read(&recording.module(&Limits::default()).source)?;
+        let text = recording.module(&Limits::default()).source;
+        let program = Program::read(&text)?;
         let sources: BTreeMap<&str, Option<&str>> = recording.functions().collect();
         let library = |file: &&str| file.contains("raydsl/src/");
         let file = |f: &String| sources.get(f.as_str()).copied().flatten().filter(library);
@@ -33,10 +35,13 @@ impl Found {
         let files: BTreeSet<String> =
             program.functions.iter().filter_map(file).map(short).collect();
         let traces = program.names().map(str::to_owned).chain(files.iter().cloned()).collect();
-        Ok(Self { scene, program, traces, files })
+        Ok(Self { scene, text, program, traces, files })
     }
 
     fn has(&self, trace: &str) -> bool {
+        if trace.contains(' ') {
+            return self.text.contains(trace);
+        }
         self.traces.iter().any(|found| is_like(found, trace))
     }
 }

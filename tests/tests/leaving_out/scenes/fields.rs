@@ -7,7 +7,8 @@ use raydsl::machine::Recording;
 use raydsl::prelude::*;
 use raydsl::texture::{Address, AsTextureRef, ColorSpace, Filter};
 use raydsl::volume::{
-    Cut, Euler, ExactCell, Grid, GridConfig, TransferFunction, Volume, VolumeLight,
+    Cut, Euler, ExactCell, Grid, GridConfig, Midpoint, TransferFunction, TransferFunction2d,
+    Volume, Volume2d, VolumeLight,
 };
 
 use super::Made;
@@ -32,6 +33,21 @@ pub(super) fn volume() -> Made {
     let grid = grid(&voxels)?;
     let (volume, euler) = (&Volume::new(&grid, transfer()?), Euler::new(0.25));
     Ok(recorded!(marched(volume, euler)(ray: Ray) -> Vec4))
+}
+
+#[kernel]
+pub(super) fn borders(volume: &Volume2d<'_, f32>, midpoint: Midpoint, ray: Ray) -> Vec4 {
+    volume.integrate(midpoint, ray, VolumeLight::new()).rgba()
+}
+
+/// Colours and opacities by values and the lengths of their gradients.
+pub(super) fn volume_2d() -> Made {
+    let voxels = [0.5f32; 64];
+    let (grid, unit) = (grid(&voxels)?, vec2(0.0, 1.0));
+    let samples = [(Vec3::ONE, 0.5); 4];
+    let transfer = TransferFunction2d::new(&samples, uvec2(2, 2), unit, unit, 1.0)?;
+    let (volume, midpoint) = (&Volume2d::new(&grid, transfer), Midpoint::new(0.25));
+    Ok(recorded!(borders(volume, midpoint)(ray: Ray) -> Vec4))
 }
 
 #[kernel]
@@ -72,6 +88,10 @@ pub(super) fn lookup(config: TextureConfig) -> Made {
 
 pub(super) fn nearest() -> Made {
     lookup(TextureConfig::new().address(Address::Wrap).filter(Filter::Nearest))
+}
+
+pub(super) fn repeated() -> Made {
+    lookup(TextureConfig::new().address(Address::Wrap).filter(Filter::Linear))
 }
 
 pub(super) fn linear() -> Made {

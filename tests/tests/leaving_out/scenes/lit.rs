@@ -4,8 +4,8 @@ use raydsl::bsdf::{
     Bsdf, BsdfSample, ComplexIor, Conductor, Dielectric, Lambert, Luminous, Material, NO_LIGHT,
 };
 use raydsl::integrators::{
-    PathLimits, PathOptions, PathSample, ambient_occlusion, direct_light, path, volume_path,
-    whitted,
+    PathLimits, PathOptions, PathSample, ambient_occlusion, direct_light, path, path_with,
+    volume_path, whitted,
 };
 use raydsl::kernel;
 use raydsl::light::{AnyLight, AreaLight, DirectionalLight, Environment, Lights, PointLight};
@@ -130,6 +130,51 @@ pub(super) fn channels() -> Made {
     let scene = &Bvh::build(&soup)?;
     let (lights, limits) = (&Lights::new(&lamps, scene.bounds())?, PathLimits::new(4));
     Ok(recorded!(path_with_channels(scene, lights, limits)(ray: Ray, pixel: UVec2) -> PathSample))
+}
+
+const WHOLE: PathOptions = PathOptions { without_roulette: true, ..PathOptions::new() };
+const HOLES: PathOptions = PathOptions { masks: true, ..PathOptions::new() };
+
+#[kernel]
+pub(super) fn whole_path(
+    scene: &Bvh<'_, Face>,
+    lights: &Lights<'_, AreaLight<Triangle>>,
+    limits: PathLimits,
+    ray: Ray,
+    pixel: UVec2,
+) -> Vec4 {
+    let surface = |hit: Hit, point: ShadingPoint| material(hit, point);
+    let sampler = sampler_of(pixel);
+    path_with::<_, _, Luminous<Lambert>>(scene, surface, lights, WHOLE, limits, ray, sampler).color
+}
+
+/// The diffuse path, which does not end by chance.
+pub(super) fn without_roulette() -> Made {
+    let (soup, lamps) = lit_triangles();
+    let scene = &Bvh::build(&soup)?;
+    let (lights, limits) = (&Lights::new(&lamps, scene.bounds())?, PathLimits::new(4));
+    Ok(recorded!(whole_path(scene, lights, limits)(ray: Ray, pixel: UVec2) -> Vec4))
+}
+
+#[kernel]
+pub(super) fn path_through_holes(
+    scene: &Bvh<'_, Face>,
+    lights: &Lights<'_, AreaLight<Triangle>>,
+    limits: PathLimits,
+    ray: Ray,
+    pixel: UVec2,
+) -> Vec4 {
+    let surface = |hit: Hit, point: ShadingPoint| material(hit, point);
+    let sampler = sampler_of(pixel);
+    path_with::<_, _, Luminous<Lambert>>(scene, surface, lights, HOLES, limits, ray, sampler).color
+}
+
+/// The diffuse path among surfaces that may have holes.
+pub(super) fn holes() -> Made {
+    let (soup, lamps) = lit_triangles();
+    let scene = &Bvh::build(&soup)?;
+    let (lights, limits) = (&Lights::new(&lamps, scene.bounds())?, PathLimits::new(4));
+    Ok(recorded!(path_through_holes(scene, lights, limits)(ray: Ray, pixel: UVec2) -> Vec4))
 }
 
 /// Any of three materials.

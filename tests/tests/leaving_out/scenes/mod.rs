@@ -20,12 +20,16 @@ macro_rules! recorded {
 }
 
 mod fields;
+mod films;
 mod lit;
 mod primitives;
 
-use fields::{cubic, cut, linear, nearest, solid, volume};
+use fields::{cubic, cut, linear, nearest, repeated, solid, volume, volume_2d};
 pub(crate) use fields::{grid, marched, transfer};
-use lit::{channels, diffuse, direct, fog, glass, metal, mirrors, occlusion};
+use films::{adaptive, film, frame};
+use lit::{
+    channels, diffuse, direct, fog, glass, holes, metal, mirrors, occlusion, without_roulette,
+};
 pub(crate) use lit::{diffuse_path, lit_triangles};
 pub(crate) use primitives::colors;
 use primitives::{coordinates, cost, depth, few, instances, kinds, layers, points};
@@ -90,6 +94,19 @@ pub(crate) fn all() -> Vec<Scene> {
             diffuse,
         ),
         scene(
+            "path without roulette",
+            "triangle, tree, closest hit, any hit, surface, material, Lambert, direct light, lights, \
+             area light, light table, path, samples, directions",
+            without_roulette,
+        ),
+        // Coordinates of candidates are not left out: see the end of the book's page.
+        scene(
+            "path with holes",
+            "triangle, tree, multi-hit, surface, coordinates, material, Lambert, direct light, lights, \
+             area light, light table, path, roulette, holes, samples, directions",
+            holes,
+        ),
+        scene(
             "channels",
             "triangle, tree, closest hit, any hit, surface, material, Lambert, direct light, lights, \
              area light, light table, path, roulette, channels, samples, directions",
@@ -114,15 +131,20 @@ pub(crate) fn all() -> Vec<Scene> {
             glass,
         ),
         scene("volume", "volume, grid, transfer function, empty space, steps", volume),
+        scene("2-D volume", "volume, grid, 2-D transfer function, empty space, steps", volume_2d),
         scene(
             "cut volume",
             "volume, grid, transfer function, empty space, exact cells, cut, sphere, surface",
             cut,
         ),
-        scene("nearest texels", "texture, 2-D texture, nearest", nearest),
-        scene("linear texels", "texture, 2-D texture, linear, sRGB", linear),
-        scene("cubic texels", "texture, 2-D texture, cubic", cubic),
-        scene("3-D texels", "texture, 3-D texture, linear", solid),
+        scene("nearest texels", "texture, 2-D texture, nearest, repeat", nearest),
+        scene("repeated texels", "texture, 2-D texture, linear, repeat", repeated),
+        scene("linear texels", "texture, 2-D texture, linear, clamp, sRGB", linear),
+        scene("cubic texels", "texture, 2-D texture, cubic, border", cubic),
+        scene("3-D texels", "texture, 3-D texture, linear, mirror", solid),
+        scene("frame", "camera", frame),
+        scene("film", "camera, film, samples", film),
+        scene("adaptive film", "camera, film, adaptive samples, samples", adaptive),
     ]
 }
 
