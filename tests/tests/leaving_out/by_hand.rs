@@ -1,8 +1,8 @@
-//! Generated kernels beside kernels that are written by hand, for three scenes: the same bits, and how
-//! many instructions each has.
+//! Generated kernels beside kernels of another hand, for four scenes: the same bits, and how many
+//! instructions each has.
 //!
 //! What is written by hand has the buffers and the numbers of the generated text, and nothing else of
-//! it. `RAYDSL_SPIRV=FOLDER` writes the SPIR-V of both there, for tools that optimise it.
+//! it. The kernel of ambient occlusion is not written: a program reduced it (`reduce.rs`). `RAYDSL_SPIRV=FOLDER` writes the SPIR-V of both there, for tools that optimise it.
 
 use std::error::Error;
 use std::path::Path;
@@ -17,13 +17,14 @@ use raydsl_tests::gpu::gpu;
 use raydsl_tests::scenes::spheres;
 
 use super::matrix::assert_in_book;
-use super::scenes::{colors, diffuse_path, grid, lit_triangles, marched, transfer};
+use super::occlusion;
+use super::scenes::{colors, diffuse_path, grid, lit_triangles, marched, open_sky, transfer};
 
 /// How many instructions the functions of the generated text have, and those of the one by hand.
 type Counts = Result<[usize; 2], Box<dyn Error>>;
 
 /// Returns a text by hand with the declaration of the numbers that the generated one has.
-fn with_numbers(by_hand: &str, generated: &str) -> String {
+pub(super) fn with_numbers(by_hand: &str, generated: &str) -> String {
     let numbers =
         generated.split_once("struct Params {").and_then(|(_, rest)| rest.split_once('}'));
     let (members, _) = numbers.expect("every generated text has numbers");
@@ -88,12 +89,20 @@ fn paths() -> Counts {
     compare("paths", &camera, &kernel, include_str!("by_hand/diffuse_path.wgsl"))
 }
 
+fn occluded() -> Counts {
+    let case = occlusion::cases().remove(0);
+    let bvh = Bvh::build(&case.soup)?;
+    let kernel = kernel!(|ray: Ray, pixel: UVec2| open_sky(&bvh, ray, pixel));
+    compare("occlusion", &case.camera, &kernel, include_str!("by_hand/occlusion.wgsl"))
+}
+
 #[test]
 fn they_give_the_same_bits() -> Result<(), Box<dyn Error>> {
     let rows = [
         ("coloured spheres, one ray for each pixel", points()?),
         ("a volume with a transfer function, by steps", volume()?),
         ("paths among diffuse triangles", paths()?),
+        ("ambient occlusion of triangles, reduced by a program", occluded()?),
     ];
     let mut table = "| kernel | generated | by hand | ratio |\n|---|---|---|---|\n".to_owned();
     for (name, [own, by_hand]) in rows {

@@ -4,5 +4,7 @@ mod by_hand;
 mod features;
 mod identity;
 mod matrix;
+mod occlusion;
+mod reduce;
 mod scenes;
 mod unread;

@@ -23,7 +23,7 @@ pub(super) fn sampler_of(pixel: UVec2) -> Sampler {
 }
 
 #[kernel]
-pub(super) fn open_sky(scene: &Bvh<'_, Face>, ray: Ray, pixel: UVec2) -> Vec4 {
+pub(crate) fn open_sky(scene: &Bvh<'_, Face>, ray: Ray, pixel: UVec2) -> Vec4 {
     ambient_occlusion::<_, 2>(scene, 1.0, ray, sampler_of(pixel))
 }
 

@@ -30,8 +30,8 @@ use films::{adaptive, film, frame};
 use lit::{
     channels, diffuse, direct, fog, glass, holes, metal, mirrors, occlusion, without_roulette,
 };
-pub(crate) use lit::{diffuse_path, lit_triangles};
-pub(crate) use primitives::colors;
+pub(crate) use lit::{diffuse_path, lit_triangles, open_sky};
+pub(crate) use primitives::{Face, colors};
 use primitives::{coordinates, cost, depth, few, instances, kinds, layers, points};
 
 /// What may go wrong while a scene is made.

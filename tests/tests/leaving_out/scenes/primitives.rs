@@ -91,9 +91,9 @@ impl Surface for Ball {
 /// A triangle that is a surface.
 #[primitive(triangle(v0, v1, v2))]
 pub(crate) struct Face {
-    pub(super) v0: Vec3,
-    pub(super) v1: Vec3,
-    pub(super) v2: Vec3,
+    pub(crate) v0: Vec3,
+    pub(crate) v1: Vec3,
+    pub(crate) v2: Vec3,
 }
 
 #[kernel]
