@@ -10,9 +10,6 @@ pub struct Kinds(u64);
 const LAST: u32 = u64::BITS - 1;
 
 impl Kinds {
-    /// Members of a set.
-    pub(crate) const MOST: usize = u64::BITS as usize;
-
     /// The set of every kind.
     pub const ALL: Self = Self(u64::MAX);
 

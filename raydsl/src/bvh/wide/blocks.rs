@@ -135,19 +135,6 @@ fn each_once(ids: &[u32]) -> [u32; WIDTH] {
     once
 }
 
-/// Returns the row of a block with the kinds of its primitives, if there are several.
-pub(super) const fn kind_row<P: Primitive>() -> Option<usize> {
-    let Schema::Struct { fields, .. } = P::SCHEMA else { return None };
-    let mut i = 0;
-    while P::KINDS > 1 && i < fields.len() {
-        if matches!(fields[i].schema, Schema::Kind { .. }) {
-            return Some(fields[i].offset / 4);
-        }
-        i += 1;
-    }
-    None
-}
-
 /// Returns the size of a primitive in words.
 const fn words_of<P: Type>() -> usize {
     P::SCHEMA.size().div_ceil(4)

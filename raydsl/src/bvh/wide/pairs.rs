@@ -5,14 +5,14 @@
 //! long. So the pairs of all rays of a stream that are at blocks are collected, and each lane tests
 //! one.
 
-use super::blocks::{self, Row, kind_row};
+use super::blocks::{self, Row};
 use super::counts::{self, Event};
 use super::node::WIDTH;
 use super::rays::{GROUP, RayWordsMut, lanes_mask, load, ray_at, ray_at_mut, row};
 use super::step::{LeafIntersector, ids};
 use crate::bvh::contract::{is_within, limit_behind, precedes};
 use crate::bvh::packet_slabs::{and, min};
-use crate::geometry::{Hit, HitOn, HitRecord, Kinds, Primitive, RayOn};
+use crate::geometry::{Hit, HitOn, HitRecord, Primitive, RayOn};
 use crate::machine::{B, Entered, F, Lanes, Packet, U, V3};
 
 /// Room for pairs. A packet adds at most 352 between two tests, and a register is written at once.
@@ -28,14 +28,12 @@ pub(super) struct Pairs {
     rays: [u32; ROOM],
     /// The block of each primitive and its slot there, as eight times the one plus the other.
     primitives: [u32; ROOM],
-    /// The indices of pairs in the order of their tests.
-    order: [u16; ROOM],
     count: usize,
 }
 
 impl Default for Pairs {
     fn default() -> Self {
-        Self { rays: [0; ROOM], primitives: [0; ROOM], order: [0; ROOM], count: 0 }
+        Self { rays: [0; ROOM], primitives: [0; ROOM], count: 0 }
     }
 }
 
@@ -99,43 +97,10 @@ impl Pairs {
         words: &mut [u32],
     ) {
         let count = core::mem::take(&mut self.count);
-        if let Some(row) = const { kind_row::<P>() } {
-            self.sort_by_kind(count, |primitive| {
-                intersector.rows(primitive / WIDTH)[row].0[primitive % WIDTH]
-            });
-        }
         for first in (0..count).step_by(R::N) {
             let range = first..(first + R::N).min(count);
-            if const { kind_row::<P>().is_none() } {
-                let pairs = (&self.rays[range.clone()], &self.primitives[range]);
-                test(r, intersector, words, pairs, CLOSEST);
-                continue;
-            }
-            let (mut rays, mut primitives, some) = ([0; GROUP], [0; GROUP], range.len());
-            for (lane, &at) in self.order[range].iter().enumerate() {
-                rays[lane] = self.rays[usize::from(at)];
-                primitives[lane] = self.primitives[usize::from(at)];
-            }
-            test(r, intersector, words, (&rays[..some], &primitives[..some]), CLOSEST);
-        }
-    }
-
-    /// Orders pairs by the kinds of their primitives, so that few registers have several.
-    #[inline(always)]
-    fn sort_by_kind(&mut self, count: usize, kind: impl Fn(usize) -> u32) {
-        let kind = |primitive: u32| kind(primitive as usize) as usize % Kinds::MOST;
-        let mut next = [0u16; Kinds::MOST];
-        for &primitive in &self.primitives[..count] {
-            next[kind(primitive)] += 1;
-        }
-        let mut sum = 0;
-        for next in &mut next {
-            (*next, sum) = (sum, sum + *next);
-        }
-        for (at, &primitive) in self.primitives[..count].iter().enumerate() {
-            let next = &mut next[kind(primitive)];
-            self.order[usize::from(*next) % ROOM] = at as u16;
-            *next += 1;
+            let pairs = (&self.rays[range.clone()], &self.primitives[range]);
+            test(r, intersector, words, pairs, CLOSEST);
         }
     }
 }

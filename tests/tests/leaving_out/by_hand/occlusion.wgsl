@@ -566,7 +566,6 @@ fn Frame_to_world(self_: Frame, v: vec3<f32>) -> vec3<f32> {
 fn bvh_any_hit(ray: Ray) -> bool {
     let limit = ray.t_max;
     var stack: array<u32, 64>;
-    var stack_t: array<f32, 64>;
     var top = 0u;
     var node = bvh_nodes_at(0u);
     let s = slabs(ray, node.min, node.max, 9.536743e-7);
@@ -609,14 +608,10 @@ fn bvh_any_hit(ray: Ray) -> bool {
                 continue;
             }
         }
-        var found = false;
-        while (top > 0u && !found) {
-            top = top - 1u;
-            found = stack_t[top] <= limit;
-        }
-        if (!found) {
+        if (top == 0u) {
             break;
         }
+        top = top - 1u;
         node = bvh_nodes_at(stack[top]);
     }
     return false;

@@ -432,8 +432,27 @@ fn linear(name: &str, query: &Query<'_>, prims: &str, is_finite: &str) -> String
     )
 }
 
+/// Takes the next node from the stack.
+const POP: &str = "\
+if (top == 0u) {
+    break;
+}
+top = top - 1u;";
+
+/// Takes the next node that is not beyond the limit from the stack.
+const POP_WITHIN_LIMIT: &str = "\
+// The next node on the stack that is not beyond the limit.
+var found = false;
+while (top > 0u && !found) {
+    top = top - 1u;
+    found = stack_t[top] <= limit;
+}
+if (!found) {
+    break;
+}";
+
 /// Returns a depth-first traversal from the node `first`: it visits the nearer child first and
-/// pushes the farther one with its distance.
+/// pushes the farther one, with its distance if the query has a limit that may come nearer.
 fn traverse(
     name: &str,
     parameters: &str,
@@ -448,9 +467,18 @@ fn traverse(
         false if lower.is_empty() => "let limit = ray.t_max;".to_owned(),
         false => "var limit = ray.t_max;".to_owned(),
     };
+    // Where the limit stays, so does whether a node is entered: the stack needs no distances.
+    let is_culled = !lower.is_empty();
+    let of_culled = |text: &'static str| if is_culled { text } else { "" };
+    let declare_enters =
+        of_culled("var stack_t: array<f32, $STACK>;").replace("$STACK", &STACK.to_string());
+    let pop = if is_culled { POP_WITHIN_LIMIT } else { POP };
     from_template(
         include_str!("traversal.wgsl"),
         &[
+            ("declare_enters", &declare_enters),
+            ("push_enter", of_culled("stack_t[top] = select(l.x, r.x, left_first);")),
+            ("pop", pop),
             ("name", name),
             ("parameters", parameters),
             ("result", result),

@@ -4,7 +4,7 @@ fn $name($parameters) -> $result {
         return $give;
     }
     var stack: array<u32, $STACK>;
-    var stack_t: array<f32, $STACK>;
+    $declare_enters
     var top = 0u;
     var node = ${nodes}_at($first);
     let s = $slabs(ray, node.min, node.max, $slack, 0.0);
@@ -30,7 +30,7 @@ fn $name($parameters) -> $result {
             if (hit_left && hit_right) {
                 let left_first = l.x <= r.x;
                 stack[top] = select(node.first, node.first + 1u, left_first);
-                stack_t[top] = select(l.x, r.x, left_first);
+                $push_enter
                 top = top + 1u;
                 if (left_first) { node = left; } else { node = right; }
                 continue;
@@ -38,15 +38,7 @@ fn $name($parameters) -> $result {
             if (hit_left) { node = left; continue; }
             if (hit_right) { node = right; continue; }
         }
-        // The next node on the stack that is not beyond the limit.
-        var found = false;
-        while (top > 0u && !found) {
-            top = top - 1u;
-            found = stack_t[top] <= limit;
-        }
-        if (!found) {
-            break;
-        }
+        $pop
         node = ${nodes}_at(stack[top]);
     }
     return $give;
