@@ -102,6 +102,7 @@ fn counts_are_those_of_one_node_and_one_block() {
         register_boxes: 4 * registers,
         register_blocks: registers,
         pairs: 64,
+        nearer: 64,
         ..Counts::default()
     };
     assert_eq!(Counts::take(), packets);

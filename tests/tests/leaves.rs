@@ -246,6 +246,15 @@ fn numbers_of_one_byte_and_kinds() {
         let hits = assert_as_slice!(things_tree, things, rays);
         assert!(hits > 200, "{hits} with {traversal:?}");
     }
+    // The first tree has packets, and its rays with hits go on in streams.
+    grains_tree.set_traversal(Traversal::Packets);
+    let moved: Vec<Grain> = grains.iter().map(|g| Grain { center: g.center * 0.8, ..*g }).collect();
+    let mut moved_tree = leaves(&moved, BuildQuality::Balanced);
+    moved_tree.set_traversal(Traversal::Streams);
+    let (both, all) = ([grains_tree, moved_tree], [grains.clone(), moved.clone()].concat());
+    let list = BvhList::new(&both).expect("few primitives");
+    let hits = assert_as_slice!(list, all, rays);
+    assert!(hits > 200, "{hits}");
 }
 
 /// Blocks are intersected without early returns.

@@ -353,31 +353,45 @@ fn assert_in_medium(case: &InMedium<'_>, voxels: &[f32]) -> Result<(), Box<dyn E
     let lights = Lights::new(list, cube())?;
     let dome = &BALL[..];
     let ray = MEDIUM_RAY;
-    let kernel = kernel!(|i: u32, seed: u32| {
-        volume_path::<_, _, Paint>(
-            dome,
-            |_hit: Hit, _point: ShadingPoint| paint,
-            |ray: Ray, rng: Rng| {
-                let mut rng = rng;
-                let met = collision(&murk, anisotropy, ray, &mut rng);
-                let none = vec3(0.0, 0.0, 0.0);
-                let emission = if emits { met.albedo } else { none };
-                Collision { emission, albedo: if emits { none } else { met.albedo }, ..met }
-            },
-            |ray: Ray, rng: Rng| {
-                let mut rng = rng;
-                ratio_transmittance(&murk, ray, &mut rng)
-            },
-            &lights,
-            host(options),
-            limits,
-            ray,
-            sampler_of(i, seed),
-        )
-        .color
-        .x
-    });
-    assert_mean(case.name, &kernel, case.exact);
+    let some: Vec<(u32, u32)> = (0..300).map(|i| (i, 9)).collect();
+    let mut last = Vec::new();
+    // The roulette of the case, one that never begins, and none.
+    for (roulette, without_roulette) in [(limits.roulette, false), (u32::MAX, false), (0, true)] {
+        let limits = PathLimits { roulette, ..limits };
+        let options = PathOptions { without_roulette, ..options };
+        let kernel = kernel!(|i: u32, seed: u32| {
+            volume_path::<_, _, Paint>(
+                dome,
+                |_hit: Hit, _point: ShadingPoint| paint,
+                |ray: Ray, rng: Rng| {
+                    let mut rng = rng;
+                    let met = collision(&murk, anisotropy, ray, &mut rng);
+                    let none = vec3(0.0, 0.0, 0.0);
+                    let emission = if emits { met.albedo } else { none };
+                    Collision { emission, albedo: if emits { none } else { met.albedo }, ..met }
+                },
+                |ray: Ray, rng: Rng| {
+                    let mut rng = rng;
+                    ratio_transmittance(&murk, ray, &mut rng)
+                },
+                &lights,
+                host(options),
+                limits,
+                ray,
+                sampler_of(i, seed),
+            )
+            .color
+            .x
+        });
+        if without_roulette {
+            // Each path is that of roulette that never begins.
+            assert_eq!(run(&kernel, Variant::widest(), &some), last, "{}, {options:?}", case.name);
+        } else if roulette == u32::MAX {
+            last = run(&kernel, Variant::widest(), &some);
+        } else {
+            assert_mean(case.name, &kernel, case.exact);
+        }
+    }
     Ok(())
 }
 

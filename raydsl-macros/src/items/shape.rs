@@ -96,7 +96,9 @@ impl Shape {
         let arguments = of_self(self.arguments.to_token_stream(), members);
         let (hits, surface) = (hits(&shape, &arguments), surface(&shape, &arguments));
         let boxes = boxes(&shape, &arguments);
-        let is_short = self.name == "triangle" || self.name == "sphere";
+        // A hundred operations or so, without a loop.
+        let short = ["triangle", "sphere", "disk", "rectangle", "plane", "cuboid"];
+        let is_short = short.iter().any(|name| self.name == name);
         let is_short = is_short.then(|| {
             quote!(
                 const IS_SHORT: bool = true;

@@ -185,7 +185,8 @@ impl<'a, P: Primitive> Bvh<'a, P> {
     /// queries. A scene without shared data passes `&[]`.
     ///
     /// Nodes have eight children, and leaves are blocks of eight primitives in structure-of-arrays
-    /// layout. One ray tests eight boxes or eight primitives at a time; the rays of a query are
+    /// layout. One ray tests eight boxes or eight primitives at a time, or a register of pairs of rays
+    /// and primitives that are not [short](Primitive::IS_SHORT); the rays of a query are
     /// traced as ray packets or ray streams, whichever is faster. Hits are those of any other tree.
     ///
     /// Devices do not use it. On a machine without AVX2 and NEON, and for fewer primitives than

@@ -57,7 +57,7 @@ pub trait Primitive: Type {
 
     /// Whether `intersect` has a hundred operations or so and no loop, as for triangles and spheres.
     /// [Wide trees](crate::bvh::Bvh::build_wide) test eight primitives of a block at once without
-    /// the early exits of `intersect` then. Of others they keep the boxes too, 24 bytes each, and
+    /// the early exits of `intersect` then. Of others they keep the boxes too, 192 bytes for a block of up to eight, and
     /// test the primitives whose boxes a ray enters. Hits are the same. In an `impl` under
     /// `#[primitive]` it is a constant of that name.
     const IS_SHORT: bool = false;

@@ -106,7 +106,8 @@ pub struct PathOptions {
     /// How light is found.
     pub lights: LightSampling,
     /// Whether no path ends by chance: [`PathLimits::roulette`] is not read, and a kernel has no code
-    /// of it. Results are those of `u32::MAX` there.
+    /// of it. Results are those of `u32::MAX` there: [`PathLimits::bounces`] alone ends a path that goes
+    /// on to bring light, or numbers that are not finite.
     pub without_roulette: bool,
 }
 

@@ -22,6 +22,28 @@ struct Ball {
     radius: f32,
 }
 
+/// A ball whose test is said to be long: wide trees keep its box.
+#[primitive]
+#[derive(Debug, PartialEq)]
+struct Bead {
+    center: Vec3,
+    radius: f32,
+}
+
+#[primitive]
+impl Bead {
+    const SLACK: f32 = sphere::SLACK;
+    const MAX_CROSSINGS: u32 = sphere::MAX_CROSSINGS;
+
+    fn intersect(&self, ray: Ray) -> Hit {
+        sphere::intersect(ray, self.center, self.radius)
+    }
+
+    fn get_bounds(&self) -> Aabb {
+        Aabb::from_sphere(self.center, self.radius)
+    }
+}
+
 /// What adversaries are made of.
 trait Subject: Primitive<Hit = Hit, Shared = ()> + std::fmt::Debug {
     /// One around a point, of about this size.
@@ -33,6 +55,17 @@ trait Subject: Primitive<Hit = Hit, Shared = ()> + std::fmt::Debug {
 impl Subject for Ball {
     fn chosen(choices: &mut Choices<'_>, at: Vec3, size: f32) -> Self {
         Self { center: at, radius: size * choices.pick(&[1.0, 0.5, 0.0, 1e-3]) }
+    }
+
+    fn target(&self, choices: &mut Choices<'_>) -> Vec3 {
+        self.center + choices.axis() * self.radius
+    }
+}
+
+impl Subject for Bead {
+    fn chosen(choices: &mut Choices<'_>, at: Vec3, size: f32) -> Self {
+        let Ball { center, radius } = Ball::chosen(choices, at, size);
+        Self { center, radius }
     }
 
     fn target(&self, choices: &mut Choices<'_>) -> Vec3 {
@@ -64,8 +97,9 @@ impl Subject for Triangle {
 /// Where a tree answers otherwise than its primitives do.
 pub fn scene(bytes: &[u8]) -> usize {
     let choices = &mut Choices::new(bytes);
-    match choices.below(2) {
+    match choices.below(3) {
         0 => scene_of::<Ball>(choices),
+        1 => scene_of::<Bead>(choices),
         _ => scene_of::<Triangle>(choices),
     }
 }

@@ -13,7 +13,7 @@ use raydsl::prelude::*;
 use raydsl::render::FilmArgs;
 use raydsl::volume::{Euler, Volume};
 use raydsl_report::Program;
-use raydsl_tests::gpu::gpu;
+use raydsl_tests::gpu::{gpu, keeps_denormals};
 use raydsl_tests::scenes::spheres;
 
 use super::matrix::assert_in_book;
@@ -22,6 +22,9 @@ use super::scenes::{colors, diffuse_path, grid, lit_triangles, marched, open_sky
 
 /// How many instructions the functions of the generated text have, and those of the one by hand.
 type Counts = Result<[usize; 2], Box<dyn Error>>;
+
+/// The kernel that is not by hand; see `occlusion.rs`.
+const REDUCED: &str = "occlusion";
 
 /// Returns a text by hand with the declaration of the numbers that the generated one has.
 pub(super) fn with_numbers(by_hand: &str, generated: &str) -> String {
@@ -48,7 +51,11 @@ fn compare<A: FilmArgs, R: Type + PartialEq + std::fmt::Debug>(
         }
     }
     let counts = programs.map(|program| program.size.code);
-    let Some(gpu) = gpu() else { return Ok(counts) };
+    // What a program reduced may differ where a driver has its own way with numbers that are not finite.
+    let is_reduced = name == REDUCED;
+    let Some(gpu) = gpu().filter(|gpu| !is_reduced || keeps_denormals(gpu)) else {
+        return Ok(counts);
+    };
     let zero = R::read(&vec![0; R::SCHEMA.size()]);
     let mut pictures = [(); 2].map(|()| Image::filled(width, height, zero));
     gpu.frame(camera, kernel, &mut pictures[0])?;
@@ -93,7 +100,7 @@ fn occluded() -> Counts {
     let case = occlusion::cases().remove(0);
     let bvh = Bvh::build(&case.soup)?;
     let kernel = kernel!(|ray: Ray, pixel: UVec2| open_sky(&bvh, ray, pixel));
-    compare("occlusion", &case.camera, &kernel, include_str!("by_hand/occlusion.wgsl"))
+    compare(REDUCED, &case.camera, &kernel, include_str!("by_hand/occlusion.wgsl"))
 }
 
 #[test]

@@ -74,7 +74,8 @@ pub enum Traversal {
     /// Chooses by the kind of query, the number of rays, and their divergence; the default. Closest
     /// hits: rays form packets where twelve or more, or most of them, have directions in one octant
     /// that differ by no more than half of their length; others form streams. Any hits: rays are
-    /// sorted if there are 512 or more and all are bounded; others form streams.
+    /// sorted if there are 512 or more and all are bounded; others form streams, and so do all rays to
+    /// primitives that are not [short](crate::geometry::Primitive::IS_SHORT).
     #[default]
     Auto,
     /// Ray streams: up to 256 rays are interleaved, each with its own stack. For incoherent rays.

@@ -21,8 +21,13 @@ pub(crate) struct Blocks {
     /// Rows per block, for code that is not generic over the primitive.
     height: usize,
     /// The boxes of each block's primitives, if they [have boxes](has_boxes).
-    boxes: Vec<Planes>,
+    boxes: Vec<Boxes>,
 }
+
+/// The boxes of a block's primitives.
+#[derive(Clone, Copy, Debug)]
+#[repr(C, align(64))]
+struct Boxes(Planes);
 
 /// Whether blocks have the boxes of their primitives: tests of primitives that take longer than
 /// those of boxes are worth a test of their own box first.
@@ -32,6 +37,9 @@ pub(super) const fn has_boxes<P: Primitive>() -> bool {
 
 /// Fills a block with the primitives of these ids; the bytes are scratch space for one of them.
 type Fill<'a> = &'a (dyn Fn(&mut [Row], &[u32], &mut [u8]) + Sync);
+
+/// Maximum number of blocks: eight times the number of each, and a slot, fit in a word.
+const MOST_BLOCKS: usize = 1 << 29;
 
 /// Blocks per task.
 const PIECE: usize = 512;
@@ -44,6 +52,10 @@ impl Blocks {
         indices: &[u32],
         ranges: &[Range],
     ) -> Self {
+        assert!(
+            ranges.len() <= MOST_BLOCKS,
+            "a wide tree has at most 2^29 blocks: build a binary one"
+        );
         let mut blocks =
             Self::filled(words_of::<P>() + 1, indices, ranges, &|block, ids, bytes| {
                 fill(block, prims, ids, bytes);
@@ -56,9 +68,9 @@ impl Blocks {
 
     /// Adds the boxes of all primitives.
     fn add_boxes(&mut self, bounds: &(dyn Fn(u32) -> Aabb + Sync)) {
-        let mut boxes = vec![NO_BOXES; self.len()];
+        let mut boxes = vec![Boxes(NO_BOXES); self.len()];
         tasks::map_pieces_mut(&mut boxes, PIECE, |first, boxes| {
-            for (block, planes) in boxes.iter_mut().enumerate() {
+            for (block, Boxes(planes)) in boxes.iter_mut().enumerate() {
                 for (slot, &id) in self.members(first + block).iter().enumerate() {
                     set_box(planes, slot, bounds(id));
                 }
@@ -91,7 +103,7 @@ impl Blocks {
     /// Returns the boxes of a block's primitives, which [have boxes](has_boxes).
     #[inline(always)]
     pub(super) fn boxes(&self, index: usize) -> &Planes {
-        &self.boxes[index]
+        &self.boxes[index].0
     }
 
     pub(super) fn len(&self) -> usize {

@@ -17,7 +17,7 @@ pub struct Counts {
     pub beam_nodes: u64,
     /// Blocks of up to eight primitives visited by beams.
     pub beam_blocks: u64,
-    /// Tests of a box against a register of a beam's rays.
+    /// Tests of a box, of a child or of a primitive, against a register of a beam's rays.
     pub register_boxes: u64,
     /// Blocks intersected by a register of a beam's rays, since one of them at least enters it.
     pub register_blocks: u64,
@@ -25,12 +25,14 @@ pub struct Counts {
     pub register_primitives: u64,
     /// Nodes visited by single rays and rays of streams, each a test of eight boxes.
     pub nodes: u64,
-    /// Blocks visited by single rays and rays of streams, each a test of up to eight primitives.
+    /// Blocks visited by single rays and rays of streams, each a test of up to eight primitives, or of
+    /// their boxes where `intersect` is not [short](crate::geometry::Primitive::IS_SHORT).
     pub blocks: u64,
-    /// Pairs of a ray and a primitive whose box it enters, each tested in a lane, where `intersect`
-    /// is not [short](crate::geometry::Primitive::IS_SHORT).
+    /// Pairs of a ray and a primitive whose box it enters, each tested in a lane: those of streams, and
+    /// those of beams where less than three quarters of a register enter the box.
     pub pairs: u64,
-    /// Those of `blocks` and `register_blocks` that held a nearer hit, in closest-hit queries.
+    /// Those of `blocks`, `register_blocks` and `pairs` that held a nearer hit, in closest-hit queries;
+    /// of streams that have pairs, the pairs alone.
     pub nearer: u64,
 }
 

@@ -1,5 +1,5 @@
-//! The wide tree: nodes of eight children over blocks of eight primitives, each tested by one ray
-//! at once, and its traversals by single rays, ray streams and ray packets.
+//! The wide tree: nodes of eight children over blocks of eight primitives, which are tested eight at
+//! once by a ray, one by a register of rays, or as [pairs], and its traversals by single rays, ray streams and ray packets.
 
 mod beam;
 mod binary;

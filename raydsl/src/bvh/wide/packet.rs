@@ -6,7 +6,7 @@ use super::blocks::{self, Row, has_boxes};
 use super::counts::{self, Event};
 use super::node::{Child, NO_BOXES, Planes, WIDTH};
 use super::octant::{GROUPS, Octant};
-use super::pairs::Pairs;
+use super::pairs::{Pairs, ROOM};
 use super::rays::{ActiveMasks, GROUP, Group, Rays, lanes_mask, load, load_words, place, row};
 use super::step::{LeafIntersector, count, enter, ids, last_key, nearest, sorted};
 use crate::bvh::contract::{Padding, is_within, limit_behind, precedes};
@@ -25,6 +25,9 @@ const SPREAD: f32 = 0.5;
 /// The share of a register's rays from which a primitive is tested with that register; pairs of fewer
 /// rays and a primitive wait for others.
 const FULL: (usize, usize) = (3, 4);
+
+/// A block adds pairs of fewer than that share of a packet's rays, to fewer than a register of others.
+const _: () = assert!(GROUPS * GROUP * WIDTH * FULL.0 / FULL.1 + GROUP <= ROOM);
 
 /// Scratch memory of packets, reused by the next query.
 #[derive(Debug, Default)]
@@ -140,7 +143,7 @@ fn traverse<R: Lanes, P: Primitive>(
         loop {
             if top == 0 {
                 if const { has_boxes::<P>() } {
-                    pairs.test::<true, R, P>(r, intersector, packet.rays.words());
+                    pairs.flush::<true, R, P>(r, intersector, packet.rays.words());
                 }
                 return;
             }
@@ -210,7 +213,7 @@ impl<'a, R: Lanes> RayPacket<'a, R> {
             }
         }
         if const { has_boxes::<P>() } {
-            is_nearer |= pairs.test_full(r, intersector, self.rays.words());
+            is_nearer |= pairs.flush_full(r, intersector, self.rays.words());
         }
         is_nearer
     }

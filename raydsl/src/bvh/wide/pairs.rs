@@ -15,17 +15,14 @@ use crate::bvh::packet_slabs::{and, min};
 use crate::geometry::{Hit, HitOn, HitRecord, Primitive, RayOn};
 use crate::machine::{B, Entered, F, Lanes, Packet, U, V3};
 
-/// Room for pairs. A packet adds at most 352 between two tests, and a register is written at once.
-const ROOM: usize = 512 + GROUP;
-
-/// What [`row::FOUND`] is set to where the pairs of a ray held a nearer hit.
-pub(super) const NEARER: u32 = 2;
+/// Room for pairs; a register is written at once.
+pub(super) const ROOM: usize = 512 + GROUP;
 
 /// Pairs that are still to be tested: scratch memory, reused by the next query.
 #[derive(Debug)]
 pub(super) struct Pairs {
     /// The places of the rays.
-    rays: [u32; ROOM],
+    places: [u32; ROOM],
     /// The block of each primitive and its slot there, as eight times the one plus the other.
     primitives: [u32; ROOM],
     count: usize,
@@ -33,7 +30,7 @@ pub(super) struct Pairs {
 
 impl Default for Pairs {
     fn default() -> Self {
-        Self { rays: [0; ROOM], primitives: [0; ROOM], count: 0 }
+        Self { places: [0; ROOM], primitives: [0; ROOM], count: 0 }
     }
 }
 
@@ -53,7 +50,7 @@ impl Pairs {
             |i| first + i as u32,
         );
         e.u32_store(e.u32_compress(all, slots), &mut self.primitives[self.count..][..WIDTH]);
-        self.rays[self.count..][..WIDTH].fill(ray);
+        self.places[self.count..][..WIDTH].fill(ray);
         self.count += e.bits(slots).count_ones() as usize;
     }
 
@@ -64,7 +61,7 @@ impl Pairs {
             #[inline(always)]
             |i| first + i as u32,
         );
-        r.u32_store(r.u32_compress(all, rays), &mut self.rays[self.count..][..R::N]);
+        r.u32_store(r.u32_compress(all, rays), &mut self.places[self.count..][..R::N]);
         r.u32_store(r.u32(primitive), &mut self.primitives[self.count..][..R::N]);
         self.count += r.bits(rays).count_ones() as usize;
     }
@@ -72,17 +69,24 @@ impl Pairs {
     /// Tests pairs for the least hits as long as they fill registers, and keeps the rest; returns
     /// whether any ray has a nearer hit.
     #[inline(always)]
-    pub(super) fn test_full<R: Lanes, P: Primitive>(
+    pub(super) fn flush_full<R: Lanes, P: Primitive>(
         &mut self,
         r: R,
         intersector: &LeafIntersector<'_, P>,
         words: &mut [u32],
     ) -> bool {
-        let mut is_nearer = false;
-        while self.count >= R::N {
-            self.count -= R::N;
-            let (rays, primitives) = (&self.rays[self.count..], &self.primitives[self.count..]);
-            is_nearer |= test(r, intersector, words, (&rays[..R::N], &primitives[..R::N]), true);
+        let (mut first, mut is_nearer) = (0, false);
+        while self.count - first >= R::N {
+            let range = first..first + R::N;
+            let pairs = (&self.places[range.clone()], &self.primitives[range]);
+            is_nearer |= test_register(r, intersector, words, pairs, true);
+            first += R::N;
+        }
+        // The rest comes first the next time.
+        if first > 0 {
+            self.places.copy_within(first..self.count, 0);
+            self.primitives.copy_within(first..self.count, 0);
+            self.count -= first;
         }
         is_nearer
     }
@@ -90,7 +94,7 @@ impl Pairs {
     /// Tests all pairs and removes them. Keeps the least hit of each ray with `CLOSEST`, else whether
     /// there is any.
     #[inline(always)]
-    pub(super) fn test<const CLOSEST: bool, R: Lanes, P: Primitive>(
+    pub(super) fn flush<const CLOSEST: bool, R: Lanes, P: Primitive>(
         &mut self,
         r: R,
         intersector: &LeafIntersector<'_, P>,
@@ -99,8 +103,8 @@ impl Pairs {
         let count = core::mem::take(&mut self.count);
         for first in (0..count).step_by(R::N) {
             let range = first..(first + R::N).min(count);
-            let pairs = (&self.rays[range.clone()], &self.primitives[range]);
-            test(r, intersector, words, pairs, CLOSEST);
+            let pairs = (&self.places[range.clone()], &self.primitives[range]);
+            test_register(r, intersector, words, pairs, CLOSEST);
         }
     }
 }
@@ -109,7 +113,7 @@ impl Pairs {
 /// `is_closest`, else whether there is any; returns whether any ray has a nearer hit. A function of
 /// its own, since every copy of `intersect` costs compile time.
 #[inline(never)]
-fn test<R: Lanes, P: Primitive>(
+fn test_register<R: Lanes, P: Primitive>(
     r: R,
     intersector: &LeafIntersector<'_, P>,
     words: &mut [u32],
@@ -226,7 +230,9 @@ fn keep_nearer<R: Lanes, P: Primitive>(
         ray.set_float(row::U, R::f32_lane(&hit.u.0, lane));
         ray.set_float(row::V, R::f32_lane(&hit.v.0, lane));
         ray.set(row::ID, id);
-        ray.set(row::FOUND, NEARER);
+        ray.set(row::FOUND, 1);
+        ray.set(row::NEARER, 1);
+        counts::one(Event::Nearer);
         let end = ray.as_ref().float(row::T_MAX);
         ray.set_float(row::LIMIT, limit_behind(found.t, P::SLACK, end));
     }

@@ -36,7 +36,9 @@ pub(super) mod row {
     pub(in super::super) const AT: usize = 26;
     pub(in super::super) const BOTTOM: usize = 27;
     pub(in super::super) const TOP: usize = 28;
-    pub(in super::super) const COUNT: usize = 29;
+    /// Set to 1 where a pair of the ray held a nearer hit.
+    pub(in super::super) const NEARER: usize = 29;
+    pub(in super::super) const COUNT: usize = 30;
 
     /// The rows of the ray itself.
     pub(in super::super) const RAY: Range<usize> = ORIGIN..T_MAX + 1;

@@ -2,6 +2,7 @@
 //!
 //! Each ray has a stack of its own, and takes one step at a time: a node or a block. Rays at nodes
 //! and rays at blocks are in separate lists, and move from one list to the other without a branch.
+//! Where primitives have boxes, the rays at blocks are tested as [pairs](super::pairs).
 //! So no unpredictable branch is left, and the processor works on the next rays while one waits for
 //! memory.
 
@@ -10,7 +11,7 @@ use core::ops::Range;
 use super::blocks::{Row, has_boxes};
 use super::counts::{self, Event};
 use super::node::{Child, WIDTH, WideNode};
-use super::pairs::{NEARER, Pairs};
+use super::pairs::Pairs;
 use super::rays::{GROUP, Rays, lanes_of, place, ray_at, ray_at_mut, row};
 use super::step::{LeafIntersector, enter, ids, last_key, sorted, words};
 use crate::bvh::contract::{limit_behind, precedes};
@@ -209,19 +210,18 @@ impl Interleaved<'_> {
                 let block = Child(words_of.word(row::AT)).index();
                 let (_, mask) = enter(e, intersector.tree.blocks.boxes(block), words_of);
                 self.pairs.add(e, ray, block, mask);
+                ray_at_mut(all, ray).set(row::NEARER, 0);
                 end += 1;
             }
-            self.pairs.test::<CLOSEST, R, P>(r, intersector, all);
+            self.pairs.flush::<CLOSEST, R, P>(r, intersector, all);
             // Go on, and cull the stacks of rays with a nearer hit.
             for i in begin..end {
                 let ray = self.blocks.places[i];
                 let words_of = ray_at(all, ray);
                 let (mut top, found) = (words_of.word(row::TOP), words_of.word(row::FOUND));
-                if CLOSEST && found == NEARER {
-                    counts::one(Event::Nearer);
+                if CLOSEST && words_of.word(row::NEARER) != 0 {
                     let (bottom, limit) = (words_of.word(row::BOTTOM), words_of.float(row::LIMIT));
                     top = self.drop_beyond(e, bottom, top, limit);
-                    ray_at_mut(all, ray).set(row::FOUND, 1);
                 }
                 self.pop_if(CLOSEST || found == 0, all, ray, top);
             }
