@@ -371,7 +371,6 @@ fn walls_any_hit(ray: Ray) -> bool {
         return false;
     }
     var stack: array<u32, 64>;
-    var stack_t: array<f32, 64>;
     var top = 0u;
     var node = walls_nodes_at(0u);
     let s = slabs(ray, node.min, node.max, 9.536743e-7, 0.0);
@@ -397,7 +396,6 @@ fn walls_any_hit(ray: Ray) -> bool {
             if (hit_left && hit_right) {
                 let left_first = l.x <= r.x;
                 stack[top] = select(node.first, node.first + 1u, left_first);
-                stack_t[top] = select(l.x, r.x, left_first);
                 top = top + 1u;
                 if (left_first) { node = left; } else { node = right; }
                 continue;
@@ -405,15 +403,10 @@ fn walls_any_hit(ray: Ray) -> bool {
             if (hit_left) { node = left; continue; }
             if (hit_right) { node = right; continue; }
         }
-        // The next node on the stack that is not beyond the limit.
-        var found = false;
-        while (top > 0u && !found) {
-            top = top - 1u;
-            found = stack_t[top] <= limit;
-        }
-        if (!found) {
+        if (top == 0u) {
             break;
         }
+        top = top - 1u;
         node = walls_nodes_at(stack[top]);
     }
     return false;
