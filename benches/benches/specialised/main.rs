@@ -17,6 +17,7 @@ use std::process::ExitCode;
 use std::time::Duration;
 
 use clap::Parser;
+use raydsl::gpu::Context;
 use raydsl::prelude::*;
 use raydsl::render::FilmArgs;
 use raydsl_benches::clock::{median, seconds, spread};
