@@ -18,6 +18,26 @@ const BLOCK: u32 = 4;
 /// Rays that a thread is handed at once.
 const PART: usize = 4096;
 
+/// Reads the width and height of a film, a multiple of [`TILE`].
+///
+/// # Errors
+///
+/// A sentence with the sizes that there are.
+pub fn parse_size(text: &str) -> Result<u32, String> {
+    let size = text.parse::<u32>().ok().filter(|n| (TILE..=4096).contains(n) && n % TILE == 0);
+    size.ok_or_else(|| "sizes are multiples of 16 up to 4096".to_owned())
+}
+
+/// Reads the name of a traversal.
+///
+/// # Errors
+///
+/// A sentence with the names that there are.
+pub fn parse_traversal(text: &str) -> Result<Traversal, String> {
+    let named = Traversal::ALL.into_iter().find(|traversal| traversal.name() == text);
+    named.ok_or_else(|| format!("one of {}", Traversal::ALL.map(Traversal::name).join(", ")))
+}
+
 /// What asking some rays gave.
 #[derive(Clone, Copy, Default)]
 pub struct Outcome {

@@ -18,7 +18,7 @@ use std::process::ExitCode;
 
 use clap::Parser;
 use raydsl::prelude::Traversal;
-use raydsl_benches::contest::TILE;
+use raydsl_benches::contest::{parse_size, parse_traversal};
 use raydsl_benches::scenes::Scene;
 use raydsl_benches::table::{Line, finish, print};
 
@@ -54,16 +54,6 @@ struct Args {
     /// Cargo says so.
     #[arg(long, hide = true)]
     bench: bool,
-}
-
-fn parse_size(text: &str) -> Result<u32, String> {
-    let size = text.parse::<u32>().ok().filter(|n| (TILE..=4096).contains(n) && n % TILE == 0);
-    size.ok_or_else(|| "sizes are multiples of 16 up to 4096".to_owned())
-}
-
-fn parse_traversal(text: &str) -> Result<Traversal, String> {
-    let named = Traversal::ALL.into_iter().find(|traversal| traversal.name() == text);
-    named.ok_or_else(|| format!("one of {}", Traversal::ALL.map(Traversal::name).join(", ")))
 }
 
 fn main() -> ExitCode {
