@@ -7,7 +7,7 @@ use std::sync::Mutex;
 use raydsl::bvh::{Accelerated, Accelerator, AnyHits, ClosestHits};
 use raydsl::machine::{Lanes, Machine, Packet};
 use raydsl::prelude::*;
-use raydsl::{Type, kernel};
+use raydsl::{Type, assert_variants_agree, kernel};
 use raydsl_tests::levels::{LevelTask, each_level, gangs, widest_level};
 use raydsl_tests::rng::Rng;
 
@@ -319,6 +319,51 @@ fn lists() {
         let hits = assert_as_slice!(list, all, rays);
         assert!(hits > 200, "{hits}");
     }
+}
+
+/// Compares all variants of a scene's queries, WGSL among them.
+macro_rules! assert_on_devices {
+    ($scene:expr, $rays:expr) => {{
+        let scene = &$scene;
+        let kernel = kernel!(|ray: Ray| (scene.closest_hit(ray), scene.any_hit(ray)));
+        assert_variants_agree!(&kernel, $rays);
+        let text = kernel.wgsl();
+        assert!(text.contains("struct WideNode") && !text.contains("struct Node "), "{text}");
+    }};
+}
+
+/// Devices traverse wide trees, too: of primitives of any size, with spatial splits, with data that
+/// they share, and lists; and the binary tree is not made for them.
+#[test]
+fn devices() {
+    let mut rng = Rng::of("leaves on devices");
+    let rays = rays(&mut rng, 1500);
+    let faces = triangles(&mut rng, 400);
+    let sizes = [0, 1, 9].map(|count| (count, BuildQuality::Balanced));
+    for (count, quality) in sizes.into_iter().chain(BuildQuality::ALL.map(|q| (480, q))) {
+        let bvh = leaves(&faces[..count], quality);
+        assert_on_devices!(bvh, &rays);
+    }
+    let grain = |i: u32| Grain {
+        center: rng.point(3.0),
+        radius: Unorm8::new(rng.range(0.1, 1.0)),
+        is_there: !i.is_multiple_of(3),
+        shell: Unorm16::new(rng.range(0.2, 0.7)),
+    };
+    let grains: Vec<Grain> = (0..200).map(grain).collect();
+    assert_on_devices!(leaves(&grains, BuildQuality::Balanced), &rays);
+    let mut things: Vec<Thing> = balls(&mut rng, 60).into_iter().map(Thing::Ball).collect();
+    things.extend(faces[..60].iter().copied().map(Thing::Face));
+    assert_on_devices!(leaves(&things, BuildQuality::Best), &rays);
+    let vertices: Vec<Vec3> = (0..60).map(|_| rng.point(3.0)).collect();
+    let indexed: Vec<IndexedTriangle> = (0..150)
+        .map(|_| IndexedTriangle { vertices: [0; 3].map(|_| rng.range(0.0, 59.9) as u32) })
+        .collect();
+    let bvh = Bvh::build_wide(&indexed, &vertices, &always()).expect("finite bounds");
+    assert_on_devices!(bvh, &rays);
+    let trees = [0..300, 300..300, 300..309, 309..480]
+        .map(|range| leaves(&faces[range], BuildQuality::Balanced));
+    assert_on_devices!(BvhList::new(&trees).expect("few primitives"), &rays);
 }
 
 /// Packets per query.

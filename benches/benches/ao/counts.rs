@@ -1,6 +1,6 @@
 //! What the library's queries do in trees with copies: boxes and primitives, not seconds.
 
-use raydsl::bvh::Counts;
+use raydsl::bvh::{Cost, Counts, Node};
 use raydsl::prelude::*;
 
 use crate::own::{self, Tree};
@@ -34,7 +34,54 @@ pub(crate) fn print(name: &str, trees: &[Tree<'_>], work: &Workload, only: &[Row
         let counts = Counts::take();
         print_row(contender.row, counts, rounds::rays(contender.row, work) as f64);
     }
+    print_on_device(trees, work, only);
     println!();
+}
+
+/// Prints what rays read on a device, each for itself, in binary and in wide trees.
+fn print_on_device(trees: &[Tree<'_>], work: &Workload, only: &[Row]) {
+    println!("  a ray on a device reads{:>28}{:>8}{:>8}", "nodes", "prims", "bytes");
+    let is_wanted = |row: &Row| table::is_wanted(only, *row);
+    for row in [Row::Primary, Row::AoShort, Row::Bounce].into_iter().filter(is_wanted) {
+        let short = |ray: &Ray| ray.with_range(ray.t_min, work.short);
+        let (rays, is_any): (Vec<Ray>, _) = match row {
+            Row::Primary => (work.primary.clone(), false),
+            Row::AoShort => (work.shadow.iter().map(short).collect(), true),
+            _ => (work.shadow.clone(), false),
+        };
+        for tree in trees {
+            let bvh = &tree.bvh;
+            let binary = rays.iter().map(|ray| match is_any {
+                true => bvh.any_hit_with_cost(*ray).1,
+                false => bvh.closest_hit_with_cost(*ray).1,
+            });
+            // Each primitive is found through its id.
+            let triangle = size_of::<Triangle>() as u64;
+            let binary = sum(binary, size_of::<Node>() as u64, triangle + 4);
+            print_counts(row, &format!("{} binary", tree.name()), binary, rays.len());
+            let wide = rays.iter().filter_map(|ray| bvh.hit_on_device(*ray, is_any));
+            let wide = sum(wide.map(|found| found.1), WIDE_NODE, triangle);
+            if bvh.is_wide() {
+                print_counts(row, &tree.name(), wide, rays.len());
+            }
+        }
+    }
+}
+
+/// Bytes of a wide tree's node on a device.
+const WIDE_NODE: u64 = 80;
+
+/// Returns the sums of nodes, of primitives and of bytes.
+fn sum(costs: impl Iterator<Item = Cost>, of_node: u64, of_primitive: u64) -> [u64; 3] {
+    costs.fold([0; 3], |[nodes, prims, bytes], cost| {
+        let (n, p) = (u64::from(cost.nodes), u64::from(cost.primitives));
+        [nodes + n, prims + p, bytes + n * of_node + p * of_primitive]
+    })
+}
+
+fn print_counts(row: Row, tree: &str, counts: [u64; 3], rays: usize) {
+    let [nodes, primitives, bytes] = counts.map(|count| count as f64 / rays as f64);
+    println!("  {:<20}{tree:<24}{nodes:>8.1}{primitives:>8.1}{bytes:>8.0}", row.name());
 }
 
 fn print_row(row: Row, c: Counts, rays: f64) {

@@ -140,8 +140,7 @@ impl<'a> Rounds<'a> {
         let built = Outcome { seconds, ..Outcome::default() };
         self.note("build", who(name.to_owned(), ("", 0)), cost, built);
         let kernel = kernel!(|ray: Ray| bvh.closest_hit(ray));
-        // A device asks the binary tree of a wide one, which is that of another setting.
-        let has_device = task.device.is_some() && !is_wide;
+        let has_device = task.device.is_some();
         for variant in Variant::ALL.into_iter().filter(|v| v.is_native() || has_device) {
             let (image, seconds) = task.frame(variant, &kernel, Hit::miss());
             let hits = image.pixels().iter().filter(|hit| hit.is_hit);

@@ -17,7 +17,7 @@ use crate::machine::{Capture, Machine, Owner, Parameter, Resource};
 /// A query returns the result of one tree over all primitives, with those of the first tree first,
 /// those of the second behind them, and so on: [`Hit::prim_id`] counts through the list. Rays are
 /// tested against every tree's box, so a list is for a few trees; on a GPU its trees lie in one
-/// buffer each for primitives, nodes and indices.
+/// buffer each for primitives, nodes and ids.
 ///
 /// ```
 /// use raydsl::prelude::*;

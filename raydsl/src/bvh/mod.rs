@@ -189,15 +189,17 @@ impl<'a, P: Primitive> Bvh<'a, P> {
     /// and primitives that are not [short](Primitive::IS_SHORT); the rays of a query are
     /// traced as ray packets or ray streams, whichever is faster. Hits are those of any other tree.
     ///
-    /// Devices do not use it. On a machine without AVX2 and NEON, and for fewer primitives than
+    /// On a device, closest-hit and any-hit queries of the tree, or of a list of such trees, read
+    /// nodes of 80 bytes with boxes of eight bits a side, and copies of the primitives in the order of
+    /// the leaves. On a machine without AVX2 and NEON, and for fewer primitives than
     /// [`BuildConfig::min_wide_size`], the tree is a binary one without copies. Traversals of wide
     /// trees are a lot of code: a program that calls this takes rustc some seconds more for each
     /// type of primitive.
     ///
     /// The binary tree is not kept. It is made again on first use, by one thread while others wait:
     /// for degenerate rays, whose components are too large or too small for the box tests of the
-    /// wide tree, scenes of instances, devices, the reference, refitting, and [`Bvh::nodes`]. Call
-    /// the latter to have it in time.
+    /// wide tree, scenes of instances, other queries on a device, the reference, refitting, and
+    /// [`Bvh::nodes`]. Call the latter to have it in time.
     ///
     /// ```
     /// use raydsl::prelude::*;
@@ -364,7 +366,8 @@ impl<'a, P: Primitive> Bvh<'a, P> {
     }
 
     /// Returns the size of the tree in bytes, without the primitives, which the application owns. A
-    /// wide tree includes its copies of primitives, and its binary tree if that has been made.
+    /// wide tree includes its copies of primitives, and its binary tree and its nodes for a device if
+    /// those have been made.
     pub fn bytes(&self) -> usize {
         self.tree.own.structure.bytes()
     }

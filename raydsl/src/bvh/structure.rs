@@ -73,6 +73,17 @@ impl Structure {
         Branches { nodes, indices }
     }
 
+    /// Returns the number of nodes of the binary tree and of its index list, without making it.
+    pub(super) fn binary_len(&self) -> [usize; 2] {
+        match (self.binary.get(), &self.wide) {
+            (None, Some(wide)) => wide.binary_len(),
+            _ => {
+                let Branches { nodes, indices } = self.branches();
+                [nodes.len(), indices.len()]
+            }
+        }
+    }
+
     /// Returns the bounds of all primitives.
     pub(super) fn bounds(&self) -> Aabb {
         match &self.wide {

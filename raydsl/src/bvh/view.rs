@@ -7,6 +7,7 @@ use glam::Affine3;
 use super::contract::Padding;
 use super::instances::Placed;
 use super::structure::Structure;
+use super::wide::device::WideBuffers;
 use super::wide::{Wide, WideQueries};
 use super::{Accelerator, Node, Owned, list};
 use crate::geometry::{Kinds, Primitive, Ray};
@@ -35,6 +36,10 @@ pub(crate) mod buffers {
     pub(crate) const SHARED: u32 = 3;
     pub(crate) const ROOTS: u32 = 4;
     pub(crate) const PLACES: u32 = 5;
+    pub(crate) const WIDE_NODES: u32 = 6;
+    pub(crate) const LEAVES: u32 = 7;
+    pub(crate) const LEAF_IDS: u32 = 8;
+    pub(crate) const WIDE_ROOTS: u32 = 9;
 }
 
 /// The nodes of a tree and its index list.
@@ -84,6 +89,14 @@ impl<'a, T, S> Part<'a, T, S> {
     pub(crate) fn tree(&self) -> Option<Branches<'a>> {
         match self.finder {
             Finder::Trees(structure) => Some(structure.branches()),
+            _ => None,
+        }
+    }
+
+    /// Returns the number of nodes of the binary tree, and of its index list, if there are trees.
+    fn binary_len(&self) -> Option<[usize; 2]> {
+        match self.finder {
+            Finder::Trees(structure) => Some(structure.binary_len()),
             _ => None,
         }
     }
@@ -389,15 +402,15 @@ impl<'a, T, S> View<'a, T, S> {
 
     /// Returns the number of nodes and of indices.
     pub(crate) fn tree_len(&self) -> (u64, u64) {
-        let trees = self.parts().filter_map(|part| part.tree());
         let groups = self.placed().map_or((0, 0), Placed::group_len);
-        trees.fold(groups, |(n, i), t| (n + t.nodes.len() as u64, i + t.indices.len() as u64))
+        let lengths = self.parts().filter_map(|part| part.binary_len());
+        lengths.fold(groups, |(n, i), [nodes, ids]| (n + nodes as u64, i + ids as u64))
     }
 
     /// Returns the number of trees with a root.
     pub(crate) fn root_len(&self) -> u64 {
-        let parts: Vec<_> = self.parts().collect();
-        list::roots(&parts).count() as u64
+        let has_nodes = |part: &Part<'a, T, S>| part.binary_len().is_some_and(|len| len[0] > 0);
+        self.parts().filter(has_nodes).count() as u64
     }
 }
 
@@ -493,7 +506,7 @@ impl<T: Type, S: Type> Resource for View<'_, T, S> {
                 let roots: Vec<u32> = list::roots(&parts).collect();
                 Some(Cow::Owned(bytemuck::cast_slice(&roots).to_vec()))
             }
-            _ => None,
+            part => self.wide_bytes(part),
         }
     }
 
@@ -517,6 +530,11 @@ impl<T: Type, S: Type> Resource for View<'_, T, S> {
                 if is_list {
                     let roots = self.root_len();
                     out.buffer(key(buffers::ROOTS), &format!("{name}_roots"), &Schema::U32, roots);
+                }
+                let wide = self.wide_buffers();
+                out.fact(wide.as_ref().map_or(0, |wide| wide.stack as u64));
+                for buffer in wide.iter().flat_map(WideBuffers::all) {
+                    out.buffer(key(buffer.part), &buffer.name, buffer.schema, buffer.len);
                 }
             }
             // Their text depends on how deep they are nested, among others.

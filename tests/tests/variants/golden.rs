@@ -205,6 +205,22 @@ fn two_trees() -> Result<(), raydsl::bvh::BuildError> {
     Ok(())
 }
 
+/// Wide trees of a list, one after another.
+#[test]
+fn wide_trees() -> Result<(), Box<dyn std::error::Error>> {
+    let balls = spheres(200);
+    let tree = |balls| Bvh::build_wide(balls, &[], &BuildConfig::default());
+    let trees = [tree(&balls[..80])?, tree(&balls[80..])?];
+    let points = BvhList::new(&trees)?;
+    let kernel = kernel!(|ray: Ray| {
+        let hit = points.closest_hit(ray);
+        let up = Ray::new(ray.at(hit.t), Vec3::Y);
+        (hit.prim_id, hit.is_hit && points.any_hit(up))
+    });
+    assert_wgsl("wide_trees", &kernel.wgsl());
+    Ok(())
+}
+
 /// A loop over hits, of shapes that are crossed twice.
 #[test]
 fn hits() -> Result<(), raydsl::bvh::BuildError> {

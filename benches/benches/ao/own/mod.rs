@@ -31,7 +31,7 @@ struct Setting {
     is_asked_by: fn(Variant) -> bool,
 }
 
-/// All modes: these trees, each asked by some variants. A device asks the binary tree of a wide one.
+/// All modes: these trees, each asked by some variants.
 static SETTINGS: [Setting; 3] = [
     Setting {
         name: "",
@@ -43,7 +43,7 @@ static SETTINGS: [Setting; 3] = [
         name: " wide",
         quality: BuildQuality::Balanced,
         is_wide: true,
-        is_asked_by: |v| v.is_native() && v.isa().1 >= 8,
+        is_asked_by: |v| v == Variant::Wgsl || v.is_native() && v.isa().1 >= 8,
     },
     Setting {
         name: " best",

@@ -10,10 +10,8 @@ impl Wide {
     /// Expands the wide tree to the binary tree that it was collapsed from, with one leaf for each
     /// block.
     pub(in crate::bvh) fn binary(&self) -> Tree {
-        let blocks = self.blocks.len();
-        let entries = (0..blocks).map(|block| self.blocks.members(block).len()).sum();
-        let nodes = Vec::with_capacity((2 * blocks).saturating_sub(1));
-        let made = Tree { nodes, indices: Vec::with_capacity(entries) };
+        let [nodes, entries] = self.binary_len();
+        let made = Tree { nodes: Vec::with_capacity(nodes), indices: Vec::with_capacity(entries) };
         let mut expansion = Expansion { wide: self, made };
         if !self.is_empty() {
             expansion.reserve(1);

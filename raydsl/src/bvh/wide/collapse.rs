@@ -27,8 +27,17 @@ pub(super) struct Range {
 pub(super) struct Collapsed {
     pub(super) nodes: Vec<WideNode>,
     pub(super) blocks: Vec<Range>,
-    /// Upper bound of the children that are on a traversal stack at once.
+    /// What a traversal needs at most.
+    pub(super) most: Most,
+}
+
+/// Upper bounds of a traversal's stack.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Most {
+    /// Children that are on the stack at once.
     pub(super) pending: usize,
+    /// Nodes of one path from the root.
+    pub(super) levels: usize,
 }
 
 /// The optimal forests of the subtree below a binary node.
@@ -59,9 +68,9 @@ pub(super) fn collapse(nodes: &[Node], solidity: &(dyn Fn(Range) -> f32 + Sync))
         let mut node = WideNode::EMPTY;
         node.set(0, root.bounds(), emission.block(0));
         emission.made.nodes.push(node);
-        emission.made.pending = 1;
+        emission.made.most = Most { pending: 1, levels: 1 };
     } else {
-        emission.made.pending = emission.node(0).1;
+        emission.made.most = emission.node(0).1;
     }
     emission.made
 }
@@ -170,8 +179,8 @@ impl Emission<'_> {
         Child::block(self.made.blocks.len() as u32 - 1)
     }
 
-    /// Emits a node and its subtree; returns the node and the bound of pending children.
-    fn node(&mut self, node: usize) -> (Child, usize) {
+    /// Emits a node and its subtree; returns the node and the bounds of traversals below it.
+    fn node(&mut self, node: usize) -> (Child, Most) {
         let mut children = Children::default();
         self.split(node, self.plans[node].left[0], WIDTH, &mut children);
         // Subtrees that are likely and cheap to occlude a ray come last.
@@ -179,16 +188,18 @@ impl Emission<'_> {
         let index = self.made.nodes.len();
         self.made.nodes.push(WideNode::EMPTY);
         self.made.nodes[index].join(&children.joints[..children.joint_count]);
-        let mut deepest = 0;
+        let mut deepest = Most::default();
         for (slot, &child) in children.nodes[..children.count].iter().enumerate() {
-            let (emitted, pending) = match self.plans[child].left[0] {
-                0 => (self.block(child), 0),
+            let (emitted, below) = match self.plans[child].left[0] {
+                0 => (self.block(child), Most::default()),
                 _ => self.node(child),
             };
-            deepest = deepest.max(pending);
+            deepest.pending = deepest.pending.max(below.pending);
+            deepest.levels = deepest.levels.max(below.levels);
             self.made.nodes[index].set(slot, self.nodes[child].bounds(), emitted);
         }
-        (Child::node(index as u32), children.count - 1 + deepest.max(1))
+        let pending = children.count - 1 + deepest.pending.max(1);
+        (Child::node(index as u32), Most { pending, levels: 1 + deepest.levels })
     }
 
     /// Adds the trees of a forest of at most `count` below a node; returns the joint of them.

@@ -5,7 +5,9 @@ mod beam;
 mod binary;
 mod blocks;
 mod collapse;
+mod compressed;
 pub(super) mod counts;
+pub(super) mod device;
 mod entry;
 mod hybrid;
 mod node;
@@ -22,10 +24,14 @@ mod stream;
 mod tests;
 pub(crate) mod trace;
 
+use std::sync::OnceLock;
+
 use super::build::Tree;
 use super::{Node, Traversal};
 use crate::geometry::{Aabb, Primitive};
 use blocks::Blocks;
+use compressed::Compressed;
+pub(crate) use compressed::{COMPRESSED_SCHEMA, cell_sizes};
 use node::WideNode;
 pub(crate) use queries::{WideQueries, queries};
 
@@ -37,6 +43,12 @@ pub(crate) struct Wide {
     blocks: Blocks,
     /// Upper bound of the children that are on a traversal stack at once.
     pending: usize,
+    /// Number of nodes of the longest path from the root.
+    levels: usize,
+    /// The number of primitives in all blocks, counted on first use.
+    entries: OnceLock<usize>,
+    /// The nodes as devices read them, made on first use.
+    compressed: OnceLock<Compressed>,
     bounds: Aabb,
     /// The traversal of queries of many rays.
     pub(super) traversal: Traversal,
@@ -55,10 +67,12 @@ impl Wide {
             let ids = &indices[range.first as usize..][..range.count as usize];
             ids.iter().map(|&id| 0.5 * prims[id as usize].get_bounds(shared).half_area()).sum()
         };
-        let collapse::Collapsed { nodes, blocks, pending } = collapse::collapse(nodes, &solidity);
+        let collapse::Collapsed { nodes, blocks, most } = collapse::collapse(nodes, &solidity);
+        let collapse::Most { pending, levels } = most;
         let bounds = tree.nodes.first().map_or(Aabb::EMPTY, Node::bounds);
         let blocks = Blocks::of(prims, shared, indices, &blocks);
-        Self { nodes, blocks, pending, bounds, traversal }
+        let (entries, compressed) = (OnceLock::new(), OnceLock::new());
+        Self { nodes, blocks, pending, levels, entries, compressed, bounds, traversal }
     }
 
     pub(super) fn is_empty(&self) -> bool {
@@ -70,8 +84,40 @@ impl Wide {
         self.bounds
     }
 
+    /// Returns the number of nodes.
+    pub(super) fn len(&self) -> usize {
+        self.nodes.len()
+    }
+
+    /// Returns the number of nodes of the longest path from the root.
+    pub(super) fn levels(&self) -> usize {
+        self.levels
+    }
+
+    /// Returns the number of primitives in all blocks; one that spatial splits cut counts in each.
+    pub(super) fn entries(&self) -> usize {
+        let members = |block| self.blocks.members(block).len();
+        *self.entries.get_or_init(|| (0..self.blocks.len()).map(members).sum())
+    }
+
+    /// Returns the number of nodes of the binary tree that it expands to, and of its entries.
+    pub(super) fn binary_len(&self) -> [usize; 2] {
+        [(2 * self.blocks.len()).saturating_sub(1), self.entries()]
+    }
+
+    /// Returns the tree over these primitives as devices read it, made on first use and kept.
+    pub(super) fn compressed<P: Primitive>(
+        &self,
+        prims: &[P],
+        shared: &[P::Shared],
+    ) -> &Compressed {
+        let bounds = |id: u32| prims[id as usize].get_bounds(shared);
+        self.compressed.get_or_init(|| Compressed::of(self, &bounds))
+    }
+
     /// Returns the size of nodes and leaves in bytes.
     pub(super) fn bytes(&self) -> usize {
-        size_of_val(&self.nodes[..]) + self.blocks.bytes()
+        let compressed = self.compressed.get().map_or(0, Compressed::bytes);
+        size_of_val(&self.nodes[..]) + self.blocks.bytes() + compressed
     }
 }

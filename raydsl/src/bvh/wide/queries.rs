@@ -5,7 +5,7 @@ use core::fmt;
 use fearless_simd::Level;
 
 use super::trace::Scratch;
-use super::{Wide, single, trace};
+use super::{Compressed, Wide, single, trace};
 use crate::bvh::build::Tree;
 use crate::bvh::{Part, SceneView, Traversal, View};
 use crate::geometry::{Hit, Primitive, Ray};
@@ -19,6 +19,8 @@ use crate::run::has_wide_lanes;
 pub(crate) struct WideQueries<T, S> {
     /// Collapses a binary tree.
     pub(in crate::bvh) collapse: fn(&Tree, &[T], &[S], Traversal) -> Wide,
+    /// Returns a tree as devices read it.
+    pub(super) compressed: for<'t> fn(&'t Wide, &[T], &[S]) -> &'t Compressed,
     /// Finds the least `(t, id)` hits of rays.
     pub(super) closest: Answer<T, S>,
     /// Finds whether rays hit anything.
@@ -58,6 +60,7 @@ impl<T, S> fmt::Debug for WideQueries<T, S> {
 pub(crate) fn queries<P: Primitive>() -> Option<WideQueries<P, P::Shared>> {
     has_wide_lanes().then_some(WideQueries {
         collapse: Wide::of::<P>,
+        compressed: Wide::compressed::<P>,
         closest: trace::answer::<true, P>,
         any: trace::answer::<false, P>,
         closest_of_one: |scene: &SceneView<'_, P>, ray| single::closest_hit(scene, ray),

@@ -3,20 +3,25 @@
 //! The rules of [`contract`](crate::bvh::contract) are recorded as functions that the text calls.
 
 mod instances;
+mod text;
 mod visit;
+mod wide;
 
 use std::borrow::Cow;
 
 pub(crate) use instances::RecordedQueries;
+use text::{Query, linear, traverse};
+use wide::WideNames;
 
 use crate::bvh::contract::{
     SlabsOn, enter_leave, is_before, is_finite, is_within, limit_behind, slabs,
 };
-use crate::bvh::traverse::STACK;
+use crate::bvh::wide::COMPRESSED_SCHEMA;
+use crate::bvh::wide::device::WideBuffers;
 use crate::bvh::{Cost, CountedHit, CountedHitOn, NODE_SCHEMA, SceneView, View, buffers};
 use crate::geometry::{Hit, HitOn, HitRecord, Primitive, Ray, RayOn};
 use crate::machine::record::ir::{self, Expr};
-use crate::machine::record::{from_template, member_name, zero_value};
+use crate::machine::record::{member_name, zero_value};
 use crate::machine::wgsl::BufferKey;
 use crate::machine::{B, Data, F, Machine, Recorder, Schema, Type, V3, Value};
 
@@ -33,6 +38,8 @@ pub(super) trait Described {
     fn tree_len(&self) -> (u64, u64);
     fn root_len(&self) -> u64;
     fn place_count(&self) -> u64;
+    /// Returns the buffers of wide trees, if all trees are wide.
+    fn wide_buffers(&self) -> Option<WideBuffers>;
 }
 
 impl<P: Primitive> Described for SceneView<'_, P> {
@@ -62,6 +69,9 @@ impl<P: Primitive> Described for SceneView<'_, P> {
     }
     fn place_count(&self) -> u64 {
         self.placed().map_or(0, |placed| placed.place_count())
+    }
+    fn wide_buffers(&self) -> Option<WideBuffers> {
+        View::wide_buffers(self)
     }
 }
 
@@ -117,16 +127,28 @@ impl Recorder {
     fn closest_text(
         &self,
         prims: &dyn Described,
+        searched: &Searched,
         (intersect, path): &(String, String),
     ) -> (String, String) {
-        let prims_name = prims.primitives(self);
         let Rules { is_within, is_before, limit_behind, .. } = self.rules();
-        let test = format!(
-            "var candidate = {intersect}({prims_name}_at(id), ray){path};\n\
-             candidate.prim_id = id;\n\
-             if ({is_within}(candidate, ray) && {is_before}(candidate, best)) {{\n    \
-             best = candidate;\n    $lower\n}}",
-        );
+        let Searched { primitive, id, .. } = searched;
+        let candidate = format!("var candidate = {intersect}({primitive}, ray){path};");
+        let test = match searched.structure {
+            // Of the primitives of leaves few are hit, and of the others no id is read.
+            Structure::Wide(_) => format!(
+                "{candidate}\n\
+                 if ({is_within}(candidate, ray)) {{\n    \
+                 candidate.prim_id = {id};\n    \
+                 if ({is_before}(candidate, best)) {{\n        \
+                 best = candidate;\n        $lower\n    }}\n}}",
+            ),
+            _ => format!(
+                "{candidate}\n\
+                 candidate.prim_id = {id};\n\
+                 if ({is_within}(candidate, ray) && {is_before}(candidate, best)) {{\n    \
+                 best = candidate;\n    $lower\n}}",
+            ),
+        };
         (test, format!("limit = {limit_behind}(best.t, {:?}, ray.t_max);", prims.slack()))
     }
 
@@ -181,14 +203,19 @@ impl Recorder {
     }
 
     fn closest_hit_function<P: Primitive>(&self, prims: &SceneView<'_, P>) -> usize {
-        self.buffer_of(prims);
+        let searched = self.searched(prims, true);
         let call = self.intersect(prims);
-        self.closest_function(prims, &call)
+        self.closest_function(prims, &searched, &call)
     }
 
-    fn closest_function(&self, prims: &dyn Described, call: &(String, String)) -> usize {
-        let prims_name = prims.primitives(self);
-        let (test, lower) = self.closest_text(prims, call);
+    fn closest_function(
+        &self,
+        prims: &dyn Described,
+        searched: &Searched,
+        call: &(String, String),
+    ) -> usize {
+        let (test, lower) = self.closest_text(prims, searched, call);
+        let of = &searched.name;
         let miss = zero_value(Hit::SCHEMA);
         let query = Query {
             result: "Hit",
@@ -201,13 +228,12 @@ impl Recorder {
             continues: false,
         };
         if !prims.is_list() {
-            return self.query_function(prims, format!("{prims_name}_closest_hit"), &query);
+            return self.query_function(searched, format!("{of}_closest_hit"), &query);
         }
         // Query the trees in order, each with the best hit so far.
         let each = Query { declare: "var best = before;", continues: true, ..query };
-        let each =
-            self.tree_function(prims, format!("{prims_name}_closer_hit"), ", before: Hit", &each);
-        self.list_function(prims, format!("{prims_name}_closest_hit"), &query, &|roots| {
+        let each = self.tree_function(searched, format!("{of}_closer_hit"), ", before: Hit", &each);
+        self.list_function((prims, searched), format!("{of}_closest_hit"), &query, &|roots| {
             format!(
                 "    var best = {miss};\n    \
                  for (var i = 0u; i < params.len_of_{roots}; i = i + 1u) {{\n        \
@@ -218,14 +244,19 @@ impl Recorder {
 
     /// Returns the function of the least `(t, id)` hit that counts tested nodes and primitives.
     fn closest_hit_with_cost_function<P: Primitive>(&self, prims: &SceneView<'_, P>) -> usize {
-        self.buffer_of(prims);
+        let searched = self.searched(prims, false);
         let call = self.intersect(prims);
-        self.closest_with_cost_function(prims, &call)
+        self.closest_with_cost_function(prims, &searched, &call)
     }
 
-    fn closest_with_cost_function(&self, prims: &dyn Described, call: &(String, String)) -> usize {
-        let prims_name = prims.primitives(self);
-        let (test, lower) = self.closest_text(prims, call);
+    fn closest_with_cost_function(
+        &self,
+        prims: &dyn Described,
+        searched: &Searched,
+        call: &(String, String),
+    ) -> usize {
+        let (test, lower) = self.closest_text(prims, searched, call);
+        let of = &searched.name;
         let test = format!("cost.primitives = cost.primitives + 1u;\n{test}");
         let before = zero_value(CountedHit::SCHEMA);
         let declare = |before: &str| format!("var best = {before}.hit;\nvar cost = {before}.cost;");
@@ -239,15 +270,15 @@ impl Recorder {
             counts: true,
             continues: false,
         };
-        let name = format!("{prims_name}_closest_hit_with_cost");
+        let name = format!("{of}_closest_hit_with_cost");
         if !prims.is_list() {
-            return self.query_function(prims, name, &query);
+            return self.query_function(searched, name, &query);
         }
         // Query the trees in order, each with the best hit and the cost so far.
         let each = Query { declare: &declare("before"), continues: true, ..query };
-        let each_name = format!("{prims_name}_closer_hit_with_cost");
-        let each = self.tree_function(prims, each_name, ", before: CountedHit", &each);
-        self.list_function(prims, name, &query, &|roots| {
+        let each_name = format!("{of}_closer_hit_with_cost");
+        let each = self.tree_function(searched, each_name, ", before: CountedHit", &each);
+        self.list_function((prims, searched), name, &query, &|roots| {
             format!(
                 "    var best = {before};\n    \
                  for (var i = 0u; i < params.len_of_{roots}; i = i + 1u) {{\n        \
@@ -257,16 +288,21 @@ impl Recorder {
     }
 
     fn any_hit_function<P: Primitive>(&self, prims: &SceneView<'_, P>) -> usize {
-        self.buffer_of(prims);
+        let searched = self.searched(prims, true);
         let call = self.intersect(prims);
-        self.any_function(prims, &call)
+        self.any_function(prims, &searched, &call)
     }
 
-    fn any_function(&self, prims: &dyn Described, (intersect, path): &(String, String)) -> usize {
-        let prims_name = prims.primitives(self);
+    fn any_function(
+        &self,
+        prims: &dyn Described,
+        searched: &Searched,
+        (intersect, path): &(String, String),
+    ) -> usize {
+        let Searched { name: of, primitive, .. } = searched;
         let is_within = self.rules().is_within;
         let test = format!(
-            "if ({is_within}({intersect}({prims_name}_at(id), ray){path}, ray)) {{\n    \
+            "if ({is_within}({intersect}({primitive}, ray){path}, ray)) {{\n    \
              return true;\n}}",
         );
         let query = Query {
@@ -280,10 +316,10 @@ impl Recorder {
             continues: false,
         };
         if !prims.is_list() {
-            return self.query_function(prims, format!("{prims_name}_any_hit"), &query);
+            return self.query_function(searched, format!("{of}_any_hit"), &query);
         }
-        let each = self.tree_function(prims, format!("{prims_name}_any_hit_in"), "", &query);
-        self.list_function(prims, format!("{prims_name}_any_hit"), &query, &|roots| {
+        let each = self.tree_function(searched, format!("{of}_any_hit_in"), "", &query);
+        self.list_function((prims, searched), format!("{of}_any_hit"), &query, &|roots| {
             format!(
                 "    for (var i = 0u; i < params.len_of_{roots}; i = i + 1u) {{\n        \
                  if ({each}(ray, {roots}_at(i))) {{\n            return true;\n        }}\n    }}\n    \
@@ -293,44 +329,71 @@ impl Recorder {
     }
 
     /// Returns the function of a query of a slice, or of one tree.
-    fn query_function(&self, prims: &dyn Described, name: String, query: &Query<'_>) -> usize {
-        let (prims_name, tree) = (prims.primitives(self), self.tree(prims));
+    fn query_function(&self, searched: &Searched, name: String, query: &Query<'_>) -> usize {
         let is_finite = self.rules().is_finite;
-        self.text_function(name, types_of(query, tree.is_some()), &|name| match &tree {
-            None => linear(name, query, &prims_name, &is_finite),
-            Some(tree) => traverse(name, "ray: Ray", "0u", query, tree),
+        let structure = &searched.structure;
+        self.text_function(name, types_of(query, structure), &|name| match structure {
+            Structure::Nothing => linear(name, query, &searched.name, &is_finite),
+            Structure::Binary(tree) => traverse(name, "ray: Ray", "0u", query, tree),
+            Structure::Wide(tree) => tree.traverse(name, "ray: Ray", "0u", query),
         })
     }
 
     /// Returns the name of the function of a query of the tree at one of the roots.
     fn tree_function(
         &self,
-        prims: &dyn Described,
+        searched: &Searched,
         name: String,
         more: &str,
         query: &Query<'_>,
     ) -> String {
-        let Some(tree) = self.tree(prims) else { unreachable!("a list has trees") };
         let parameters = format!("ray: Ray, first: u32{more}");
-        let function = self.text_function(name, types_of(query, true), &|name| {
-            traverse(name, &parameters, "first", query, &tree)
-        });
+        let structure = &searched.structure;
+        let function =
+            self.text_function(name, types_of(query, structure), &|name| match structure {
+                Structure::Nothing => unreachable!("a list has trees"),
+                Structure::Binary(tree) => traverse(name, &parameters, "first", query, tree),
+                Structure::Wide(tree) => tree.traverse(name, &parameters, "first", query),
+            });
         self.function_name(function)
     }
 
     /// Returns the function of a query of a list, tree by tree.
     fn list_function(
         &self,
-        prims: &dyn Described,
+        (prims, searched): (&dyn Described, &Searched),
         name: String,
         query: &Query<'_>,
         body: &dyn Fn(&str) -> String,
     ) -> usize {
-        let roots = self.roots_buffer(prims);
+        let roots = match &searched.structure {
+            Structure::Wide(WideNames { roots: Some(roots), .. }) => roots.clone(),
+            _ => self.roots_buffer(prims),
+        };
         let result = query.result;
-        self.text_function(name, types_of(query, true), &|name| {
+        self.text_function(name, types_of(query, &searched.structure), &|name| {
             format!("fn {name}(ray: Ray) -> {result} {{\n{}}}\n", body(&roots))
         })
+    }
+
+    /// Returns what a query of a slice, of a tree or of a list searches, and adds its buffers.
+    fn searched(&self, prims: &dyn Described, may_be_wide: bool) -> Searched {
+        if may_be_wide && let Some(wide) = self.wide(prims) {
+            let WideNames { leaves, ids, .. } = &wide;
+            return Searched {
+                name: leaves.clone(),
+                primitive: format!("{leaves}_at(i)"),
+                id: format!("{ids}_at(i)"),
+                structure: Structure::Wide(wide),
+            };
+        }
+        let name = prims.primitives(self);
+        Searched {
+            primitive: format!("{name}_at(id)"),
+            name,
+            id: "id".to_owned(),
+            structure: self.tree(prims).map_or(Structure::Nothing, Structure::Binary),
+        }
     }
 
     /// Returns the buffer of the root indices of a list.
@@ -360,13 +423,36 @@ impl Recorder {
 }
 
 /// Returns the types that the text of a query names.
-fn types_of(query: &Query<'_>, has_tree: bool) -> Vec<&'static Schema> {
+fn types_of(query: &Query<'_>, structure: &Structure) -> Vec<&'static Schema> {
     let counted = query.counts.then_some([Cost::SCHEMA, CountedHit::SCHEMA]);
+    let node = match structure {
+        Structure::Nothing => None,
+        Structure::Binary(_) => Some(NODE_SCHEMA),
+        Structure::Wide(_) => Some(COMPRESSED_SCHEMA),
+    };
     [Ray::SCHEMA, Hit::SCHEMA]
         .into_iter()
-        .chain(has_tree.then_some(NODE_SCHEMA))
+        .chain(node)
         .chain(counted.into_iter().flatten())
         .collect()
+}
+
+/// What a query searches.
+struct Searched {
+    /// The prefix of its functions' names: the name of the buffer of primitives that it reads.
+    name: String,
+    /// The text of a candidate primitive, and of its id.
+    primitive: String,
+    id: String,
+    structure: Structure,
+}
+
+/// How candidates are found.
+enum Structure {
+    /// All primitives are candidates.
+    Nothing,
+    Binary(TreeNames),
+    Wide(WideNames),
 }
 
 /// Names of a tree's buffers, and of the functions that its traversals call.
@@ -390,111 +476,4 @@ pub(super) struct Rules {
 pub(super) struct BoxTests {
     pub(super) slabs: String,
     pub(super) enter_leave: String,
-}
-
-/// Text fragments of a query.
-#[derive(Clone, Copy)]
-struct Query<'a> {
-    result: &'a str,
-    declare: &'a str,
-    /// Statement that lowers the limit of a traversal, beyond which nodes are culled.
-    lower: &'a str,
-    /// Whether `best` may be a hit before the traversal.
-    continues: bool,
-    /// Template with a line `$lower`, which only traversals have.
-    test: &'a str,
-    give: &'a str,
-    slack: f32,
-    /// Whether node tests are counted, in `cost.nodes`.
-    counts: bool,
-}
-
-impl Query<'_> {
-    /// Returns the statement that counts `n` node tests.
-    fn count(&self, n: u32) -> String {
-        if self.counts { format!("cost.nodes = cost.nodes + {n}u;") } else { String::new() }
-    }
-}
-
-fn linear(name: &str, query: &Query<'_>, prims: &str, is_finite: &str) -> String {
-    let Query { result, declare, test, give, .. } = query;
-    from_template(
-        include_str!("linear.wgsl"),
-        &[
-            ("name", name),
-            ("result", result),
-            ("declare", declare),
-            ("test", &from_template(test, &[("lower", "")])),
-            ("give", give),
-            ("prims", prims),
-            ("is_finite", is_finite),
-        ],
-    )
-}
-
-/// Takes the next node from the stack.
-const POP: &str = "\
-if (top == 0u) {
-    break;
-}
-top = top - 1u;";
-
-/// Takes the next node that is not beyond the limit from the stack.
-const POP_WITHIN_LIMIT: &str = "\
-// The next node on the stack that is not beyond the limit.
-var found = false;
-while (top > 0u && !found) {
-    top = top - 1u;
-    found = stack_t[top] <= limit;
-}
-if (!found) {
-    break;
-}";
-
-/// Returns a depth-first traversal from the node `first`: it visits the nearer child first and
-/// pushes the farther one, with its distance if the query has a limit that may come nearer.
-fn traverse(
-    name: &str,
-    parameters: &str,
-    first: &str,
-    query: &Query<'_>,
-    tree: &TreeNames,
-) -> String {
-    let Query { result, declare, lower, test, give, slack, .. } = query;
-    let TreeNames { nodes, indices, rules, boxes } = tree;
-    let begin = match query.continues {
-        true => format!("var limit = ray.t_max;\nif (best.is_hit) {{\n    {lower}\n}}"),
-        false if lower.is_empty() => "let limit = ray.t_max;".to_owned(),
-        false => "var limit = ray.t_max;".to_owned(),
-    };
-    // Where the limit stays, so does whether a node is entered: the stack needs no distances.
-    let is_culled = !lower.is_empty();
-    let of_culled = |text: &'static str| if is_culled { text } else { "" };
-    let declare_enters =
-        of_culled("var stack_t: array<f32, $STACK>;").replace("$STACK", &STACK.to_string());
-    let pop = if is_culled { POP_WITHIN_LIMIT } else { POP };
-    from_template(
-        include_str!("traversal.wgsl"),
-        &[
-            ("declare_enters", &declare_enters),
-            ("push_enter", of_culled("stack_t[top] = select(l.x, r.x, left_first);")),
-            ("pop", pop),
-            ("name", name),
-            ("parameters", parameters),
-            ("result", result),
-            ("declare", &format!("{declare}\n{begin}")),
-            ("first", first),
-            ("STACK", &STACK.to_string()),
-            ("slack", &format!("{slack:?}")),
-            ("test", &from_template(test, &[("lower", lower)])),
-            ("give", give),
-            ("root_count", &query.count(1)),
-            ("child_count", &query.count(2)),
-            ("nodes", nodes),
-            ("indices", indices),
-            ("is_finite", &rules.is_finite),
-            ("slabs", &boxes.slabs),
-            ("enter_leave", &boxes.enter_leave),
-        ],
-    )
 }

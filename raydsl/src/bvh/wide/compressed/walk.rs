@@ -1,0 +1,94 @@
+//! The traversal of a device by one ray of the host: what the text `on/wgsl/wide.wgsl` does.
+
+use glam::Vec3;
+
+use super::{CompressedNode, cell_sizes};
+use crate::bvh::contract::{
+    Slabs, enter_leave, is_before, is_finite, is_within, limit_behind, slabs,
+};
+use crate::bvh::{Bvh, Cost};
+use crate::geometry::{Hit, HitRecord, Primitive, Ray};
+
+impl CompressedNode {
+    /// Returns the corners of the box in a slot.
+    pub(super) fn corners(&self, slot: usize) -> [Vec3; 2] {
+        let cells = cell_sizes(self.exponents);
+        [0, 1].map(|side| {
+            let number = |axis: usize| f32::from(self.planes[axis][side][slot]);
+            Vec3::from(self.corner) + Vec3::new(number(0), number(1), number(2)) * cells
+        })
+    }
+
+    /// Returns the primitives of a slot: the first of them, and how many.
+    pub(super) fn leaf(&self, slot: usize) -> [usize; 2] {
+        let count = |slot: usize| (self.counts >> (4 * slot) & 15) as usize;
+        [self.first_leaf as usize + (0..slot).map(count).sum::<usize>(), count(slot)]
+    }
+
+    /// Returns the slots in the order in which a ray is likely to enter them.
+    fn order(ray: &Ray) -> impl Iterator<Item = usize> + use<> {
+        let octant = ray.direction.cmplt(Vec3::ZERO).bitmask() as usize;
+        (0..8).map(move |i| i ^ octant)
+    }
+
+    /// Returns the slots whose boxes a ray enters up to `limit`.
+    fn entered(&self, s: Slabs, ray: &Ray, limit: f32) -> u32 {
+        let enters = |&slot: &usize| {
+            let [low, high] = self.corners(slot);
+            let span = enter_leave(s, low, high, ray.t_min, limit);
+            span.x <= span.y
+        };
+        (0..8).filter(enters).fold(0, |all, slot| all | 1 << slot)
+    }
+}
+
+impl<P: Primitive> Bvh<'_, P> {
+    /// Finds the least `(t, id)` hit of a ray, or any, as a device does in a wide tree; returns the
+    /// nodes that it reads, each with eight boxes, and the primitives. None if the tree is not wide.
+    #[doc(hidden)]
+    pub fn hit_on_device(&self, ray: Ray, is_any: bool) -> Option<(Hit, Cost)> {
+        let wide = self.tree.own.structure.wide()?;
+        let tree = wide.compressed(self.tree.prims, self.tree.shared);
+        let (mut best, mut cost, mut limit) = (Hit::miss(), Cost::default(), ray.t_max);
+        if tree.nodes.is_empty() || !is_finite(ray) {
+            return Some((best, cost));
+        }
+        let root = &tree.nodes[0];
+        let corner = Vec3::from(root.corner);
+        let end = corner + 255.0 * cell_sizes(root.exponents);
+        let s = slabs(false, ray, corner, end, P::SLACK, 0.0);
+        let (mut at, mut stack) = (0, Vec::new());
+        loop {
+            cost.nodes += 1;
+            let node = &tree.nodes[at];
+            let entered = node.entered(s, &ray, limit);
+            for slot in CompressedNode::order(&ray).filter(|slot| entered >> slot & 1 == 1) {
+                let [first, count] = node.leaf(slot);
+                for &id in &tree.ids[first..first + count] {
+                    cost.primitives += 1;
+                    let record = self.tree.prims[id as usize].intersect(ray, self.tree.shared);
+                    let hit = Hit { prim_id: id, ..record.hit() };
+                    if is_within(hit, ray) && is_before(false, hit, best) {
+                        best = hit;
+                        limit = limit_behind(hit.t, P::SLACK, ray.t_max);
+                        if is_any {
+                            return Some((best, cost));
+                        }
+                    }
+                }
+            }
+            // The children that are nodes, the nearest one on top.
+            let is_node = |slot: &usize| (node.slots & entered) >> slot & 1 == 1;
+            let children: Vec<usize> = CompressedNode::order(&ray).filter(is_node).collect();
+            let place = |slot: usize| {
+                let before = node.slots & ((1 << slot) - 1);
+                node.first_node as usize + before.count_ones() as usize
+            };
+            stack.extend(children.into_iter().rev().map(place));
+            match stack.pop() {
+                Some(next) => at = next,
+                None => return Some((best, cost)),
+            }
+        }
+    }
+}
