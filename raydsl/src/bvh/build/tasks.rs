@@ -23,7 +23,7 @@ pub(super) fn join<A: Send, B: Send>(
 
 /// Maps the pieces of `size` items (the last may be shorter), possibly at the same time; `f` also
 /// gets the index of the piece's first item.
-pub(super) fn map_pieces<T: Sync, R: Send>(
+pub(in crate::bvh) fn map_pieces<T: Sync, R: Send>(
     items: &[T],
     size: usize,
     f: impl Fn(usize, &[T]) -> R + Sync,

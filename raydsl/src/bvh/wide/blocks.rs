@@ -2,6 +2,7 @@
 
 use super::collapse::Range;
 use super::node::{NO_BOXES, Planes, WIDTH, set_box};
+use super::prefetch::prefetch;
 use crate::bvh::build::tasks;
 use crate::geometry::{Aabb, Primitive};
 use crate::machine::{Leaves, Machine, Schema, Type, Value, op};
@@ -35,8 +36,16 @@ pub(super) const fn has_boxes<P: Primitive>() -> bool {
     !P::IS_SHORT
 }
 
-/// Fills a block with the primitives of these ids; the bytes are scratch space for one of them.
-type Fill<'a> = &'a (dyn Fn(&mut [Row], &[u32], &mut [u8]) + Sync);
+/// What blocks are filled with.
+struct Contents<'a> {
+    /// Fills a block with the primitives of these ids; the bytes are scratch space for one of them.
+    fill: &'a (dyn Fn(&mut [Row], &[u32], &mut [u8]) + Sync),
+    /// Has the primitives of these ids fetched, which are wanted soon.
+    prefetch: &'a (dyn Fn(&[u32]) + Sync),
+}
+
+/// Blocks between one that is filled and one whose primitives are fetched.
+const AHEAD: usize = 4;
 
 /// Maximum number of blocks: eight times the number of each, and a slot, fit in a word.
 const MOST_BLOCKS: usize = 1 << 29;
@@ -56,10 +65,11 @@ impl Blocks {
             ranges.len() <= MOST_BLOCKS,
             "a wide tree has at most 2^29 blocks: build a binary one"
         );
-        let mut blocks =
-            Self::filled(words_of::<P>() + 1, indices, ranges, &|block, ids, bytes| {
-                fill(block, prims, ids, bytes);
-            });
+        let contents = Contents {
+            fill: &|block, ids, bytes| fill(block, prims, ids, bytes),
+            prefetch: &|ids| ids.iter().for_each(|&id| prefetch(&prims[id as usize])),
+        };
+        let mut blocks = Self::filled(words_of::<P>() + 1, indices, ranges, &contents);
         if const { has_boxes::<P>() } {
             blocks.add_boxes(&|id| prims[id as usize].get_bounds(shared));
         }
@@ -80,14 +90,17 @@ impl Blocks {
     }
 
     /// Builds blocks of `height` rows, each of the primitives of its range.
-    fn filled(height: usize, indices: &[u32], ranges: &[Range], fill: Fill<'_>) -> Self {
+    fn filled(height: usize, indices: &[u32], ranges: &[Range], contents: &Contents<'_>) -> Self {
         let mut rows = vec![Row([0; WIDTH]); height * ranges.len()];
         tasks::map_pieces_mut(&mut rows, PIECE * height, |first, rows| {
             let mut bytes = vec![0; 4 * (height - 1)];
             let ranges = &ranges[first / height..];
-            for (block, range) in rows.chunks_exact_mut(height).zip(ranges) {
-                let ids = &indices[range.first as usize..][..range.count as usize];
-                fill(block, ids, &mut bytes);
+            let ids = |range: &Range| &indices[range.first as usize..][..range.count as usize];
+            for (k, (block, range)) in rows.chunks_exact_mut(height).zip(ranges).enumerate() {
+                if let Some(later) = ranges.get(k + AHEAD) {
+                    (contents.prefetch)(ids(later));
+                }
+                (contents.fill)(block, ids(range), &mut bytes);
             }
         });
         Self { rows, height, boxes: Vec::new() }

@@ -53,15 +53,32 @@ struct Plan {
     solidity: f32,
 }
 
-/// Collapses a binary tree. `solidity` returns the mean projected area of the primitives in a range
-/// of the index list.
-pub(super) fn collapse(nodes: &[Node], solidity: &(dyn Fn(Range) -> f32 + Sync)) -> Collapsed {
+/// What a collapse asks of primitives.
+pub(super) struct Leaves<'a> {
+    /// Returns the mean projected area of the primitives in a range of the index list.
+    pub(super) solidity: &'a (dyn Fn(Range) -> f32 + Sync),
+    /// Has the primitives in a range fetched, which are wanted soon.
+    pub(super) prefetch: &'a (dyn Fn(Range) + Sync),
+}
+
+/// Nodes between one whose primitives are looked at and one whose primitives are fetched.
+const AHEAD: usize = 16;
+
+/// Collapses a binary tree.
+pub(super) fn collapse(nodes: &[Node], leaves: &Leaves<'_>) -> Collapsed {
     let Some(root) = nodes.first() else { return Collapsed::default() };
-    // In parallel, since primitives may be anywhere in memory.
-    let leaves = tasks::map(nodes, PIECE, |node| match node.count {
-        0 => 0.0,
-        count => solidity(Range { first: node.first, count }),
-    });
+    let range = |node: &Node| Range { first: node.first, count: node.count };
+    // In parallel and ahead, since primitives may be anywhere in memory.
+    let of_piece = |_, nodes: &[Node]| {
+        let of_node = |(k, node): (usize, &Node)| {
+            if let Some(later) = nodes.get(k + AHEAD).filter(|later| later.is_leaf()) {
+                (leaves.prefetch)(range(later));
+            }
+            if node.is_leaf() { (leaves.solidity)(range(node)) } else { 0.0 }
+        };
+        nodes.iter().enumerate().map(of_node).collect::<Vec<f32>>()
+    };
+    let leaves = tasks::map_pieces(nodes, PIECE, of_piece).concat();
     let plans = plan(nodes, &leaves);
     let mut emission = Emission { nodes, plans: &plans, made: Collapsed::default() };
     if plans[0].left[0] == 0 {

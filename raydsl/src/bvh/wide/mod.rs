@@ -15,6 +15,7 @@ mod octant;
 mod order;
 mod packet;
 mod pairs;
+mod prefetch;
 mod queries;
 mod rays;
 pub(crate) mod single;
@@ -33,6 +34,7 @@ use blocks::Blocks;
 use compressed::Compressed;
 pub(crate) use compressed::{COMPRESSED_SCHEMA, cell_sizes};
 use node::WideNode;
+use prefetch::prefetch;
 pub(crate) use queries::{WideQueries, queries};
 
 /// A wide tree with a copy of the primitives in its leaves; see
@@ -63,11 +65,15 @@ impl Wide {
         traversal: Traversal,
     ) -> Self {
         let Tree { nodes, indices } = tree;
-        let solidity = |range: collapse::Range| {
+        let of = |range: collapse::Range| {
             let ids = &indices[range.first as usize..][..range.count as usize];
-            ids.iter().map(|&id| 0.5 * prims[id as usize].get_bounds(shared).half_area()).sum()
+            ids.iter().map(|&id| &prims[id as usize])
         };
-        let collapse::Collapsed { nodes, blocks, most } = collapse::collapse(nodes, &solidity);
+        let leaves = collapse::Leaves {
+            solidity: &|range| of(range).map(|p| 0.5 * p.get_bounds(shared).half_area()).sum(),
+            prefetch: &|range| of(range).for_each(prefetch),
+        };
+        let collapse::Collapsed { nodes, blocks, most } = collapse::collapse(nodes, &leaves);
         let collapse::Most { pending, levels } = most;
         let bounds = tree.nodes.first().map_or(Aabb::EMPTY, Node::bounds);
         let blocks = Blocks::of(prims, shared, indices, &blocks);
