@@ -1,9 +1,12 @@
 //! Single-ray traversal of binary trees: the reference of every other traversal. `visit` also
 //! enters wide trees.
 
+use core::convert::identity;
 use core::mem::MaybeUninit;
 
-use super::contract::{Padding, Slabs, is_before, is_finite, is_within, limit_behind};
+use super::contract::{
+    Padding, SiblingSlabs, Slabs, is_before, is_finite, is_within, limit_behind,
+};
 use super::instances::Descent;
 use super::view::{Branches, Finder};
 use super::{Accelerator, MAX_DEPTH, Node, Part, Placed, SceneView};
@@ -170,18 +173,24 @@ pub(crate) fn nearest_counted<P: Primitive>(prims: &SceneView<'_, P>, ray: Ray) 
 fn closest<P: Primitive>(prims: &SceneView<'_, P>, ray: Ray, count: &mut impl Count) -> Hit {
     let mut best = Hit::miss();
     let slack = prims.padding().slack;
-    traverse_all(prims, ray, count, |candidate, limit| {
-        let hit = candidate.intersect().hit();
-        // Most are misses, whose ids are not needed.
-        if is_within(hit, ray) {
-            let hit = candidate.with_ids(hit);
-            if is_before(true, hit, best) {
-                best = hit;
-                *limit = limit_behind(hit.t, slack, ray.t_max);
+    traverse_all(
+        prims,
+        ray,
+        count,
+        #[inline(always)]
+        |candidate, limit| {
+            let hit = candidate.intersect().hit();
+            // Most are misses, whose ids are not needed.
+            if is_within(hit, ray) {
+                let hit = candidate.with_ids(hit);
+                if is_before(true, hit, best) {
+                    best = hit;
+                    *limit = limit_behind(hit.t, slack, ray.t_max);
+                }
             }
-        }
-        false
-    });
+            false
+        },
+    );
     best
 }
 
@@ -207,7 +216,13 @@ pub fn any_hit_with_cost<P: Primitive>(prims: &SceneView<'_, P>, ray: Ray) -> (b
 
 #[inline(always)]
 fn any<P: Primitive>(prims: &SceneView<'_, P>, ray: Ray, count: &mut impl Count) -> bool {
-    traverse_all(prims, ray, count, |candidate, _| is_within(candidate.intersect().hit(), ray))
+    traverse_all(
+        prims,
+        ray,
+        count,
+        #[inline(always)]
+        |candidate, _| is_within(candidate.intersect().hit(), ray),
+    )
 }
 
 /// Calls `meet` for every hit within the ray's range until it returns false. It may lower the limit
@@ -308,10 +323,14 @@ fn traverse_part<P: Primitive, C: Count>(
     count: &mut C,
     visit: &mut impl FnMut(&Candidate<'_, '_, P>, &mut f32) -> bool,
 ) -> bool {
-    let mut visit = |id, limit: &mut f32, count: &mut C| {
-        count.primitive();
-        visit(&Candidate { part, ray, inst, id }, limit)
-    };
+    // A closure has an attribute only as an argument.
+    let mut visit = identity(
+        #[inline(always)]
+        |id, limit: &mut f32, count: &mut C| {
+            count.primitive();
+            visit(&Candidate { part, ray, inst, id }, limit)
+        },
+    );
     let len = part.prims.len();
     match part.finder {
         Finder::Trees(trees) => {
@@ -358,12 +377,12 @@ fn traverse<C: Count>(
 ) -> bool {
     let Some(root) = tree.nodes.first() else { return false };
     let slabs = Slabs::of(ray, root, padding);
-    let enter = |node: &Node, limit| slabs.enter(node, ray.t_min, limit);
     // Test the root.
     count.nodes(1);
-    if enter(root, *limit).is_none() {
+    if slabs.enter(root, ray.t_min, *limit).is_none() {
         return false;
     }
+    let slabs = SiblingSlabs::of(&slabs);
     let mut stack = Stack::<f32>::new();
     let mut node: &Node = root;
     loop {
@@ -379,23 +398,25 @@ fn traverse<C: Count>(
             // Test both children of an inner node.
             let children = &tree.nodes[node.first as usize..node.first as usize + 2];
             count.nodes(2);
-            match (enter(&children[0], *limit), enter(&children[1], *limit)) {
-                (Some(left), Some(right)) => {
+            let pair = [&children[0], &children[1]];
+            let [enters, leaves] = slabs.spans(pair, ray.t_min, *limit);
+            match (enters[0] <= leaves[0], enters[1] <= leaves[1]) {
+                (true, true) => {
                     // Push the farther child.
-                    let near = usize::from(right < left);
-                    stack.push(node.first + 1 - near as u32, left.max(right));
+                    let near = usize::from(enters[1] < enters[0]);
+                    stack.push(node.first + 1 - near as u32, enters[1 - near]);
                     node = &children[near];
                     continue;
                 }
-                (Some(_), None) => {
+                (true, false) => {
                     node = &children[0];
                     continue;
                 }
-                (None, Some(_)) => {
+                (false, true) => {
                     node = &children[1];
                     continue;
                 }
-                (None, None) => {}
+                (false, false) => {}
             }
         }
         // Pop the next node within the limit.

@@ -218,7 +218,7 @@ fn sheared(ray: Ray, v0: Vec3, v1: Vec3, v2: Vec3) -> Sheared {
 /// 2013), divided by the determinant before scaling, so that it holds for coordinates from 1e-18 to
 /// 1e18 and directions of any usual length.
 #[kernel]
-#[inline]
+#[inline(always)]
 pub fn intersect(ray: Ray, v0: Vec3, v1: Vec3, v2: Vec3) -> Hit {
     // Make the axis along which the ray runs fastest z.
     let ax = ray.direction.x.abs();

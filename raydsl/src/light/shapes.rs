@@ -216,7 +216,7 @@ const MAX_SOLID_ANGLE: f32 = 6.2;
 
 /// Returns the coordinates, along two edges, of where the line from `from` along `wi` meets their plane.
 #[kernel]
-#[inline]
+#[inline(always)]
 fn on_plane(from: Vec3, wi: Vec3, corner: Vec3, e1: Vec3, e2: Vec3) -> Vec2 {
     let across = e1.cross(e2);
     let n = across / max(across.dot(across), f32::MIN_POSITIVE);
@@ -228,7 +228,7 @@ fn on_plane(from: Vec3, wi: Vec3, corner: Vec3, e1: Vec3, e2: Vec3) -> Vec2 {
 
 /// Returns where the line from `from` along `wi` meets a triangle, which it does but for rounding.
 #[kernel]
-#[inline]
+#[inline(always)]
 fn on_triangle(from: Vec3, wi: Vec3, v0: Vec3, v1: Vec3, v2: Vec3) -> SurfacePoint {
     let b = on_plane(from, wi, v0, v1 - v0, v2 - v0);
     let (b1, b2) = (max(b.x, 0.0), max(b.y, 0.0));

@@ -11,7 +11,7 @@ use crate::math::elementary::{atan2, sincos_2pi};
 /// Van Oosterom and Strackee, "The Solid Angle of a Plane Triangle" (1983). The volume is formed from
 /// the edges themselves, so that small and distant triangles keep their digits.
 #[kernel]
-#[inline]
+#[inline(always)]
 pub(super) fn solid_angle(from: Vec3, v0: Vec3, v1: Vec3, v2: Vec3) -> f32 {
     let (p0, p1, p2) = (v0 - from, v1 - from, v2 - from);
     let (l0, l1, l2) = (p0.dot(p0).sqrt(), p1.dot(p1).sqrt(), p2.dot(p2).sqrt());
@@ -26,7 +26,7 @@ pub(super) fn solid_angle(from: Vec3, v0: Vec3, v1: Vec3, v2: Vec3) -> f32 {
 /// Importance Sampling for Polygonal Lights" (2021), section 5. A part of the triangle with the
 /// share `u.x` of its solid angle is cut off by a line through `v1`; `u.y` chooses a point of that.
 #[kernel]
-#[inline]
+#[inline(always)]
 pub(super) fn sample_spherical_triangle(u: Vec2, from: Vec3, v0: Vec3, v1: Vec3, v2: Vec3) -> Vec3 {
     let (p0, p1, p2) = (v0 - from, v1 - from, v2 - from);
     let (l0, l1, l2) = (p0.dot(p0).sqrt(), p1.dot(p1).sqrt(), p2.dot(p2).sqrt());

@@ -355,6 +355,7 @@ impl Machine for Scalar {
     ) {
         items.on_scalar(self, input, limit, visit);
     }
+    #[inline(always)]
     fn fetch<D: Data>(&self, data: &D, index: U<Self>) -> <D::Element as Type>::On<Self> {
         if data.count() == 0 {
             return Value::zero(self);

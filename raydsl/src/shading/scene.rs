@@ -218,10 +218,12 @@ impl Asked for CrossingAlone {
     }
 }
 
+#[inline(always)]
 fn ray_on(m: &Scalar, ray: Ray) -> RayOn<Scalar> {
     Ray::splat(m, ray)
 }
 
+#[inline(always)]
 fn hit_on(m: &Scalar, hit: Hit) -> HitOn<Scalar> {
     Hit::splat(m, hit)
 }
