@@ -37,8 +37,8 @@ impl<S: RecordQuery<Hit = Hit> + ?Sized> RayQuery for S {}
 /// times ([`Instances`]), or an application-defined acceleration structure ([`Accelerated`]). Its
 /// hits have a record of any type: [`Hit`], or what the primitives' `intersect` returns.
 ///
-/// A query of a slice tests every primitive, and is faster than a tree for a few dozen of them. The
-/// results do not depend on the scene's structure, and are the same as in kernels.
+/// A query of a slice tests every primitive: for a handful of them a tree gains little. The results
+/// do not depend on the scene's structure, and are the same as in kernels.
 pub trait RecordQuery: Sync {
     /// The record of a hit: [`Hit`], or what the primitives' `intersect` returns.
     type Hit: HitRecord;
