@@ -40,8 +40,7 @@ type Error = Box<dyn std::error::Error>;
 /// A path as a whole, and one step of it.
 struct Paths<'a> {
     whole: Kernel<'a, (Ray, Sampler), Vec4>,
-    /// None where only whole paths are measured.
-    step: Option<Kernel<'a, (PathState,), PathState>>,
+    step: Kernel<'a, (PathState,), PathState>,
 }
 
 /// Measures path tracing.
@@ -101,8 +100,6 @@ enum Name {
 enum Tree {
     Binary,
     Wide,
-    /// All triangles of the Cornell box in turn.
-    None,
 }
 
 /// Who renders.
@@ -207,9 +204,6 @@ fn is_software(gpu: &GpuScheduler) -> bool {
 
 fn in_cornell(bench: &Bench) -> Result<Vec<Row>, Error> {
     let walls = cornell::walls();
-    if bench.args.tree == Some(Tree::None) {
-        return in_cornell_without_tree(bench, &walls);
-    }
     let lamps = cornell::lamps(&walls);
     let scene = match bench.args.tree {
         Some(Tree::Wide) => Bvh::build_wide(&walls, &[], &BuildConfig::default())?,
@@ -227,18 +221,7 @@ fn in_cornell(bench: &Bench) -> Result<Vec<Row>, Error> {
         path_step::<_, _, Luminous<Lambert>>(&scene, surface, &lights, host(options), limits, state)
             .next
     });
-    bench.measure(&case::of_walls(&walls, cornell::camera()), &Paths { whole, step: Some(step) })
-}
-
-fn in_cornell_without_tree(bench: &Bench, walls: &[cornell::Wall]) -> Result<Vec<Row>, Error> {
-    let lamps = cornell::lamps(walls);
-    let lights = Lights::new(&lamps, Bvh::build(walls)?.bounds())?;
-    let limits = PathLimits { bounces: bench.args.bounces, roulette: u32::MAX };
-    let whole = kernel!(|ray: Ray, sampler: Sampler| {
-        let surface = |hit: Hit, _point: ShadingPoint| walls.primitive(hit).material();
-        path::<_, _, Luminous<Lambert>>(walls, surface, &lights, limits, ray, sampler).color
-    });
-    bench.measure(&case::of_walls(walls, cornell::camera()), &Paths { whole, step: None })
+    bench.measure(&case::of_walls(&walls, cornell::camera()), &Paths { whole, step })
 }
 
 fn in_sponza(bench: &Bench, data: &Path) -> Result<Vec<Row>, Error> {
@@ -260,7 +243,7 @@ fn in_sponza(bench: &Bench, data: &Path) -> Result<Vec<Row>, Error> {
         let surface = |_hit: Hit, point: ShadingPoint| Lambert { color: point.albedo };
         path_step::<_, _, Lambert>(&scene, surface, &lights, host(options), limits, state).next
     });
-    bench.measure(&case::of_triangles("sponza", &prims, camera), &Paths { whole, step: Some(step) })
+    bench.measure(&case::of_triangles("sponza", &prims, camera), &Paths { whole, step })
 }
 
 /// The means of a picture that a renderer made, and how long it took.
@@ -306,7 +289,7 @@ impl Bench {
             return Ok(Vec::new());
         }
         let plain = Plain::new(case);
-        let contenders = self.contenders(paths.step.is_some());
+        let contenders = self.contenders();
         let mut rounds: Vec<Rounds> = contenders.iter().map(|_| Rounds::default()).collect();
         for round in 0..self.args.rounds {
             let seed = self.args.seed + round;
@@ -317,8 +300,7 @@ impl Bench {
                         self.render(case, paths, variant, sampling)?
                     }
                     Contender::Steps(variant) => {
-                        let Some(step) = &paths.step else { continue };
-                        self.in_steps(case, step, variant, Sampling::new(samples).seed(seed))
+                        self.in_steps(case, paths, variant, Sampling::new(samples).seed(seed))
                     }
                     Contender::Plain => {
                         let render = || plain.render(&case.camera, (size, samples), bounces, seed);
@@ -361,14 +343,14 @@ impl Bench {
         Ok(rows.collect())
     }
 
-    fn contenders(&self, has_steps: bool) -> Vec<Contender> {
+    fn contenders(&self) -> Vec<Contender> {
         let has_device = self.device.is_some();
         let is_here = |v: &Variant| v.is_native() || *v == Variant::Wgsl && has_device;
         let mut contenders = vec![Contender::Plain];
         let variants = Variant::ALL.into_iter().filter(is_here);
         contenders.extend(variants.map(|v| Contender::Library(v, SampleMethod::Sobol)));
         let packets = [Variant::Packet8, Variant::Packet16].into_iter().filter(is_here);
-        contenders.extend(packets.filter(|_| has_steps).map(Contender::Steps));
+        contenders.extend(packets.map(Contender::Steps));
         let random = |v| Contender::Library(v, SampleMethod::Random);
         contenders.extend([Variant::Scalar, Variant::widest()].map(random));
         let is_asked = |r: &Contender| {
@@ -407,13 +389,13 @@ impl Bench {
     fn in_steps(
         &self,
         case: &Case,
-        step: &Kernel<'_, (PathState,), PathState>,
+        paths: &Paths<'_>,
         variant: Variant,
         sampling: Sampling,
     ) -> Picture {
         let mut film = Film::new(self.args.size, self.args.size);
         let scheduler = TiledScheduler::new().variant(variant);
-        let (camera, samples) = (&case.camera, sampling.planned);
+        let (camera, step, samples) = (&case.camera, &paths.step, sampling.planned);
         let mut render =
             || scheduler.accumulate_steps(camera, step, |s| s.color, &sampling, &mut film, samples);
         let seconds = self.one_thread.install(|| seconds_on(1, &mut render).1);

@@ -217,8 +217,10 @@ fn sheared(ray: Ray, v0: Vec3, v1: Vec3, v2: Vec3) -> Sheared {
 /// The watertight test of Woop, Benthin and Wald ("Watertight Ray/Triangle Intersection", JCGT
 /// 2013), divided by the determinant before scaling, so that it holds for coordinates from 1e-18 to
 /// 1e18 and directions of any usual length.
+// Optimised code of the host has it in the loop over a leaf. `#[kernel]` does not read `cfg_attr`, so
+// packets call it as before: in place, wide trees are slower.
 #[kernel]
-#[inline(always)]
+#[cfg_attr(not(debug_assertions), inline(always))]
 pub fn intersect(ray: Ray, v0: Vec3, v1: Vec3, v2: Vec3) -> Hit {
     // Make the axis along which the ray runs fastest z.
     let ax = ray.direction.x.abs();
