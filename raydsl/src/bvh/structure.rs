@@ -109,7 +109,10 @@ impl Structure {
         let Some(mut tree) = self.binary.take() else { unreachable!("it has been made") };
         let bounds = |k: usize| prims[k].get_bounds(shared);
         build::refit(&mut tree.nodes, &tree.indices, prims.len(), &bounds)?;
-        let wide = collapse(&tree);
+        let wide = collapse(&tree).map(|mut wide| {
+            wide.set_refitted();
+            wide
+        });
         // The topology is the same, and primitives that have moved are likely to move again.
         Ok(Self { binary: tree.into(), wide })
     }

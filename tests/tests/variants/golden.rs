@@ -108,7 +108,7 @@ macro_rules! tests {
 
 raydsl_tests::kernel_table!(tests);
 
-const SCENES: [&str; 13] = [
+const SCENES: [&str; 14] = [
     "corrected_quotients",
     "hits",
     "instances",
@@ -122,6 +122,7 @@ const SCENES: [&str; 13] = [
     "texture_linear",
     "texture_sampled",
     "two_trees",
+    "wide_trees",
 ];
 
 /// What the crate's first page shows; with the branch on a captured `bool` pruned.

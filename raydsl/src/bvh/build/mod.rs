@@ -174,7 +174,7 @@ fn grow(
         _ => {
             let part = subtree::grow(&mut references, span, config, watch);
             watch.check()?;
-            (part, references.iter().map(Reference::index).collect())
+            (part, tasks::map(&references, part::PIECE, Reference::index))
         }
     };
     watch.check()?;

@@ -5,6 +5,7 @@
 //! array; that size changes the distribution of work but not the result.
 
 use super::reference::Bounds;
+use super::tasks;
 use crate::bvh::Node;
 
 /// Subtrees of at most this many references are one piece of work.
@@ -21,10 +22,10 @@ pub(super) enum Part {
 impl Part {
     /// Assembles all nodes in one array, the root first.
     pub(super) fn assemble(self) -> Vec<Node> {
-        let mut nodes = Vec::with_capacity(1 + self.len_below());
-        let blank = Node { min: glam::Vec3::ZERO, first: 0, max: glam::Vec3::ZERO, count: 0 };
-        nodes.push(blank);
-        self.place(0, &mut nodes);
+        // Zeros come from the system page by page, to the threads that write there.
+        let mut nodes: Vec<Node> = bytemuck::zeroed_vec(1 + self.len_below());
+        let (root, below) = nodes.split_at_mut(1);
+        root[0] = self.place(1, below);
         nodes
     }
 
@@ -44,21 +45,25 @@ impl Part {
         }
     }
 
-    /// Writes the part's root to `nodes[slot]` and appends the rest; frees the part meanwhile.
-    fn place(self, slot: usize, nodes: &mut Vec<Node>) {
-        let base = nodes.len() as u32;
+    /// Writes the nodes below the part's root, the first of which has the number `base`, to `nodes`;
+    /// returns the root. Frees the part meanwhile.
+    fn place(self, base: u32, nodes: &mut [Node]) -> Node {
         match self {
             Self::Whole { root, below } => {
-                nodes[slot] = rebased(root, base);
-                nodes.extend(below.into_iter().map(|node| rebased(node, base)));
+                for (place, node) in nodes.iter_mut().zip(below) {
+                    *place = rebased(node, base);
+                }
+                rebased(root, base)
             }
             Self::Fork { bounds, children } => {
-                let bounds = bounds.to_aabb();
-                nodes[slot] = Node::inner(bounds, base);
-                nodes.extend([Node::inner(bounds, 0); 2]);
-                for (slot, child) in (base as usize..).zip(*children) {
-                    child.place(slot, nodes);
-                }
+                let [left, right] = *children;
+                let (pair, below) = nodes.split_at_mut(2);
+                let (of_left, of_right) = below.split_at_mut(left.len_below());
+                let first = base + 2;
+                let second = first + of_left.len() as u32;
+                (pair[0], pair[1]) =
+                    tasks::join(|| left.place(first, of_left), || right.place(second, of_right));
+                Node::inner(bounds.to_aabb(), base)
             }
         }
     }

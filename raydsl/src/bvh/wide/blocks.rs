@@ -8,7 +8,7 @@ use crate::geometry::{Aabb, Primitive};
 use crate::machine::{Leaves, Machine, Schema, Type, Value, op};
 
 /// One word of each of eight primitives.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, bytemuck::Zeroable)]
 #[repr(C, align(32))]
 pub(crate) struct Row(pub(crate) [u32; WIDTH]);
 
@@ -44,7 +44,8 @@ struct Contents<'a> {
     prefetch: &'a (dyn Fn(&[u32]) + Sync),
 }
 
-/// Blocks between one that is filled and one whose primitives are fetched.
+/// Blocks between one that is filled and one whose primitives are fetched: as many lines as a core has
+/// under way.
 const AHEAD: usize = 4;
 
 /// Maximum number of blocks: eight times the number of each, and a slot, fit in a word.
@@ -91,7 +92,8 @@ impl Blocks {
 
     /// Builds blocks of `height` rows, each of the primitives of its range.
     fn filled(height: usize, indices: &[u32], ranges: &[Range], contents: &Contents<'_>) -> Self {
-        let mut rows = vec![Row([0; WIDTH]); height * ranges.len()];
+        // Zeros come from the system page by page, to the threads that write there.
+        let mut rows: Vec<Row> = bytemuck::zeroed_vec(height * ranges.len());
         tasks::map_pieces_mut(&mut rows, PIECE * height, |first, rows| {
             let mut bytes = vec![0; 4 * (height - 1)];
             let ranges = &ranges[first / height..];

@@ -54,32 +54,33 @@ struct Plan {
 }
 
 /// What a collapse asks of primitives.
-pub(super) struct Leaves<'a> {
+pub(super) struct Primitives<'a> {
     /// Returns the mean projected area of the primitives in a range of the index list.
     pub(super) solidity: &'a (dyn Fn(Range) -> f32 + Sync),
     /// Has the primitives in a range fetched, which are wanted soon.
     pub(super) prefetch: &'a (dyn Fn(Range) + Sync),
 }
 
-/// Nodes between one whose primitives are looked at and one whose primitives are fetched.
+/// Nodes between one whose primitives are looked at and one whose primitives are fetched: some leaves,
+/// as many lines as a core has under way.
 const AHEAD: usize = 16;
 
 /// Collapses a binary tree.
-pub(super) fn collapse(nodes: &[Node], leaves: &Leaves<'_>) -> Collapsed {
+pub(super) fn collapse(nodes: &[Node], prims: &Primitives<'_>) -> Collapsed {
     let Some(root) = nodes.first() else { return Collapsed::default() };
     let range = |node: &Node| Range { first: node.first, count: node.count };
     // In parallel and ahead, since primitives may be anywhere in memory.
     let of_piece = |_, nodes: &[Node]| {
         let of_node = |(k, node): (usize, &Node)| {
             if let Some(later) = nodes.get(k + AHEAD).filter(|later| later.is_leaf()) {
-                (leaves.prefetch)(range(later));
+                (prims.prefetch)(range(later));
             }
-            if node.is_leaf() { (leaves.solidity)(range(node)) } else { 0.0 }
+            if node.is_leaf() { (prims.solidity)(range(node)) } else { 0.0 }
         };
         nodes.iter().enumerate().map(of_node).collect::<Vec<f32>>()
     };
-    let leaves = tasks::map_pieces(nodes, PIECE, of_piece).concat();
-    let plans = plan(nodes, &leaves);
+    let solidities = tasks::map_pieces(nodes, PIECE, of_piece).concat();
+    let plans = plan(nodes, &solidities);
     let mut emission = Emission { nodes, plans: &plans, made: Collapsed::default() };
     if plans[0].left[0] == 0 {
         let mut node = WideNode::EMPTY;
@@ -92,9 +93,9 @@ pub(super) fn collapse(nodes: &[Node], leaves: &Leaves<'_>) -> Collapsed {
     emission.made
 }
 
-/// Computes the plans of all nodes, whose children come after their parents. `leaves` has the
+/// Computes the plans of all nodes, whose children come after their parents. `solidities` has the
 /// solidity of each leaf.
-fn plan(nodes: &[Node], leaves: &[f32]) -> Vec<Plan> {
+fn plan(nodes: &[Node], solidities: &[f32]) -> Vec<Plan> {
     // Relative to the surface of the root, since areas in `f32` overflow.
     let whole = nodes.first().map_or(0.0, |root| root.bounds().half_area_f64());
     let share = |node: &Node| {
@@ -107,7 +108,7 @@ fn plan(nodes: &[Node], leaves: &[f32]) -> Vec<Plan> {
         let area = share(node);
         plans[k] = if node.is_leaf() {
             let range = Range { first: node.first, count: node.count };
-            Plan { costs: [BLOCK_COST * area; WIDTH], range, solidity: leaves[k], ..none }
+            Plan { costs: [BLOCK_COST * area; WIDTH], range, solidity: solidities[k], ..none }
         } else {
             let first = node.first as usize;
             inner(area, &plans[first], &plans[first + 1])

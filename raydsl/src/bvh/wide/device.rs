@@ -42,6 +42,9 @@ impl<'a, T: Type, S> View<'a, T, S> {
         self.queries()?;
         let (mut nodes, mut entries, mut levels) = (0, 0, 0);
         for wide in self.parts().filter_map(|part| part.wide()) {
+            if !wide.is_for_devices() {
+                return None;
+            }
             nodes += wide.len() as u64;
             entries += wide.entries() as u64;
             levels = levels.max(wide.levels());
@@ -64,69 +67,47 @@ impl<'a, T: Type, S> View<'a, T, S> {
     }
 
     /// Returns the bytes of a buffer of wide trees, if all trees are wide; none of another buffer.
-    pub(crate) fn wide_bytes(&self, part: u32) -> Option<Cow<'_, [u8]>> {
-        let trees = self.wide_trees()?;
-        Some(match (part, &trees[..]) {
-            (buffers::WIDE_NODES, [only]) => Cow::Borrowed(cast_slice(&only.tree.nodes)),
-            (buffers::WIDE_NODES, _) => {
-                let moved = trees.iter().flat_map(|placed| placed.nodes());
-                Cow::Owned(cast_slice(&moved.collect::<Vec<CompressedNode>>()).to_vec())
-            }
-            (buffers::LEAVES, _) => {
-                let leaves = trees.iter().flat_map(|placed| placed.leaves());
-                Cow::Owned(bytes_of(&leaves.collect::<Vec<T>>()))
-            }
-            (buffers::LEAF_IDS, _) => {
-                let ids = trees.iter().flat_map(|placed| placed.ids());
-                Cow::Owned(cast_slice(&ids.collect::<Vec<u32>>()).to_vec())
-            }
-            (buffers::WIDE_ROOTS, _) => {
-                let roots = trees.iter().filter(|placed| !placed.tree.nodes.is_empty());
-                let roots: Vec<u32> = roots.map(|placed| placed.nodes).collect();
-                Cow::Owned(cast_slice(&roots).to_vec())
-            }
-            _ => return None,
-        })
-    }
-
-    /// Returns the wide trees of the scene, if all trees are wide.
-    fn wide_trees(&self) -> Option<Vec<Placed<'a, T, S>>> {
+    pub(crate) fn wide_bytes(&self, part: u32) -> Option<Cow<'a, [u8]>> {
         let compressed = self.queries()?.compressed;
-        let (mut nodes, mut entries) = (0, 0);
-        let place = |part: Part<'a, T, S>| {
-            let tree = compressed(part.wide()?, part.prims, part.shared);
-            let placed = Placed { part, tree, nodes, entries };
-            (nodes, entries) = (nodes + tree.nodes.len() as u32, entries + tree.ids.len() as u32);
-            Some(placed)
-        };
-        Some(self.parts().filter_map(place).collect())
+        let of_part =
+            |part: Part<'a, T, S>| Some(compressed(part.wide()?, part.prims, part.shared));
+        if part != buffers::LEAVES {
+            let first = |part: &Part<'a, T, S>| part.first;
+            let trees = self.parts().filter_map(|part| Some((of_part(part)?, first(&part))));
+            return bytes_in(&trees.collect::<Vec<_>>(), part);
+        }
+        let leaves = self.parts().filter_map(|part| Some((of_part(part)?, part.prims)));
+        let leaves = leaves.flat_map(|(tree, prims)| tree.ids.iter().map(|id| prims[*id as usize]));
+        Some(Cow::Owned(bytes_of(&leaves.collect::<Vec<T>>())))
     }
 }
 
-/// A wide tree behind others.
-struct Placed<'a, T, S> {
-    part: Part<'a, T, S>,
-    tree: &'a Compressed,
-    /// The number of nodes before it, and of primitives in leaves.
-    nodes: u32,
-    entries: u32,
-}
-
-impl<T: Type, S> Placed<'_, T, S> {
-    fn nodes(&self) -> impl Iterator<Item = CompressedNode> {
-        self.tree.nodes.iter().map(|node| CompressedNode {
-            first_node: node.first_node + self.nodes,
-            first_leaf: node.first_leaf + self.entries,
-            ..*node
-        })
+/// Returns the bytes of a buffer of trees, each with the id of its first primitive in the list.
+fn bytes_in<'a>(trees: &[(&'a Compressed, u32)], part: u32) -> Option<Cow<'a, [u8]>> {
+    if let (buffers::WIDE_NODES, [(only, _)]) = (part, trees) {
+        return Some(Cow::Borrowed(cast_slice(&only.nodes)));
     }
-
-    fn leaves(&self) -> impl Iterator<Item = T> {
-        self.tree.ids.iter().map(|&id| self.part.prims[id as usize])
+    if let (buffers::LEAF_IDS, [(only, 0)]) = (part, trees) {
+        return Some(Cow::Borrowed(cast_slice(&only.ids)));
     }
-
-    /// Returns the ids of the primitives, which count through the list.
-    fn ids(&self) -> impl Iterator<Item = u32> {
-        self.tree.ids.iter().map(|id| id + self.part.first)
+    // Nodes and primitives of the trees before.
+    let (mut nodes, mut entries, mut bytes) = (0, 0, Vec::new());
+    for (tree, first) in trees {
+        match part {
+            buffers::WIDE_NODES => bytes.extend(tree.nodes.iter().flat_map(|node| {
+                let (first_node, first_leaf) = (node.first_node + nodes, node.first_leaf + entries);
+                let node = CompressedNode { first_node, first_leaf, ..*node };
+                bytemuck::cast::<_, [u8; size_of::<CompressedNode>()]>(node)
+            })),
+            buffers::LEAF_IDS => {
+                bytes.extend(tree.ids.iter().flat_map(|id| (id + first).to_le_bytes()))
+            }
+            buffers::WIDE_ROOTS if tree.nodes.is_empty() => {}
+            buffers::WIDE_ROOTS => bytes.extend(nodes.to_le_bytes()),
+            _ => return None,
+        }
+        nodes += tree.nodes.len() as u32;
+        entries += tree.ids.len() as u32;
     }
+    Some(Cow::Owned(bytes))
 }

@@ -51,6 +51,9 @@ pub(crate) struct Wide {
     entries: OnceLock<usize>,
     /// The nodes as devices read them, made on first use.
     compressed: OnceLock<Compressed>,
+    /// Whether it was refitted. A device asks the binary tree then: it is at hand, its index list
+    /// stays, and primitives that have moved are likely to move again.
+    is_refitted: bool,
     bounds: Aabb,
     /// The traversal of queries of many rays.
     pub(super) traversal: Traversal,
@@ -69,16 +72,26 @@ impl Wide {
             let ids = &indices[range.first as usize..][..range.count as usize];
             ids.iter().map(|&id| &prims[id as usize])
         };
-        let leaves = collapse::Leaves {
+        let of_leaves = collapse::Primitives {
             solidity: &|range| of(range).map(|p| 0.5 * p.get_bounds(shared).half_area()).sum(),
             prefetch: &|range| of(range).for_each(prefetch),
         };
-        let collapse::Collapsed { nodes, blocks, most } = collapse::collapse(nodes, &leaves);
+        let collapse::Collapsed { nodes, blocks, most } = collapse::collapse(nodes, &of_leaves);
         let collapse::Most { pending, levels } = most;
         let bounds = tree.nodes.first().map_or(Aabb::EMPTY, Node::bounds);
         let blocks = Blocks::of(prims, shared, indices, &blocks);
         let (entries, compressed) = (OnceLock::new(), OnceLock::new());
-        Self { nodes, blocks, pending, levels, entries, compressed, bounds, traversal }
+        Self {
+            nodes,
+            blocks,
+            pending,
+            levels,
+            entries,
+            compressed,
+            is_refitted: false,
+            bounds,
+            traversal,
+        }
     }
 
     pub(super) fn is_empty(&self) -> bool {
@@ -111,14 +124,32 @@ impl Wide {
         [(2 * self.blocks.len()).saturating_sub(1), self.entries()]
     }
 
+    /// Notes that it was collapsed from a refitted tree.
+    pub(super) fn set_refitted(&mut self) {
+        self.is_refitted = true;
+    }
+
+    /// Returns whether devices ask it. Not where coordinates are so large that products with the cells
+    /// of a grid overflow.
+    pub(super) fn is_for_devices(&self) -> bool {
+        const LARGEST: f32 = f32::MAX / 8.0;
+        let Aabb { min, max } = self.bounds;
+        let is_small = self.is_empty() || min.abs().max(max.abs()).max_element() < LARGEST;
+        is_small && !self.is_refitted
+    }
+
     /// Returns the tree over these primitives as devices read it, made on first use and kept.
     pub(super) fn compressed<P: Primitive>(
         &self,
         prims: &[P],
         shared: &[P::Shared],
     ) -> &Compressed {
-        let bounds = |id: u32| prims[id as usize].get_bounds(shared);
-        self.compressed.get_or_init(|| Compressed::of(self, &bounds))
+        if let Some(made) = self.compressed.get() {
+            return made;
+        }
+        // Outside of the lock, since the primitives' code may do anything; of two, one is kept.
+        let made = Compressed::of(self, &|id| prims[id as usize].get_bounds(shared));
+        self.compressed.get_or_init(|| made)
     }
 
     /// Returns the size of nodes and leaves in bytes.

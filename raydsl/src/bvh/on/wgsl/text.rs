@@ -1,4 +1,4 @@
-//! Texts of queries of slices and of binary trees.
+//! Texts of queries, and those of slices and of binary trees.
 
 use super::TreeNames;
 use crate::bvh::traverse::STACK;

@@ -15,12 +15,17 @@ fn $name($parameters) -> $result {
         var found = 0u;
         let cells = $cells(node.exponents);
         for (var slot = 0u; slot < 8u; slot = slot + 1u) {
-            let half = slot >> 2u;
+            // The planes of four boxes are bytes of a word.
+            let is_second = slot > 3u;
+            let x = select(node.x.xz, node.x.yw, is_second);
+            let y = select(node.y.xz, node.y.yw, is_second);
+            let z = select(node.z.xz, node.z.yw, is_second);
             let shift = vec3<u32>(8u * (slot & 3u));
-            let lower = vec3<u32>(node.x[half], node.y[half], node.z[half]) >> shift;
-            let upper = vec3<u32>(node.x[half + 2u], node.y[half + 2u], node.z[half + 2u]) >> shift;
-            let low = node.corner + vec3<f32>(vec3<i32>(lower & vec3<u32>(255u))) * cells;
-            let high = node.corner + vec3<f32>(vec3<i32>(upper & vec3<u32>(255u))) * cells;
+            // Processors convert signed integers faster.
+            let lower = vec3<i32>((vec3<u32>(x.x, y.x, z.x) >> shift) & vec3<u32>(255u));
+            let upper = vec3<i32>((vec3<u32>(x.y, y.y, z.y) >> shift) & vec3<u32>(255u));
+            let low = node.corner + vec3<f32>(lower) * cells;
+            let high = node.corner + vec3<f32>(upper) * cells;
             let e = $enter_leave(s, low, high, ray.t_min, limit);
             let bits = ((node.slots >> slot) & 0x101u) << (slot ^ octant);
             found = found | select(0u, bits, e.x <= e.y);

@@ -12,10 +12,13 @@ pub(super) struct Leaf {
 }
 
 impl Leaf {
-    pub(super) fn of(members: &[u32]) -> Self {
-        let mut ids = [0; WIDTH];
-        ids[..members.len()].copy_from_slice(members);
-        Self { ids, count: members.len() }
+    pub(super) fn of(members: impl Iterator<Item = u32>) -> Self {
+        let mut leaf = Self { ids: [0; WIDTH], count: 0 };
+        for id in members {
+            leaf.ids[leaf.count] = id;
+            leaf.count += 1;
+        }
+        leaf
     }
 
     pub(super) fn ids(&self) -> &[u32] {
@@ -25,6 +28,7 @@ impl Leaf {
 
 /// A leaf cut in two, and how many primitives fewer a ray is expected to test, relative to the area of
 /// boxes.
+#[derive(Clone, Copy)]
 struct Cut {
     halves: [ChildBox; 2],
     gain: f64,
@@ -35,15 +39,18 @@ pub(super) fn split(children: &mut Vec<ChildBox>, bounds: Bounds<'_>) {
     if children.len() == WIDTH {
         return;
     }
-    let mut cuts: Vec<Option<Cut>> = children.iter().map(|child| cut(child, bounds)).collect();
+    let mut cuts = [None; WIDTH];
+    for (at, child) in cuts.iter_mut().zip(children.iter()) {
+        *at = cut(child, bounds);
+    }
     while children.len() < WIDTH {
-        let gain = |k: &usize| cuts[*k].as_ref().map_or(0.0, |cut| cut.gain);
+        let gain = |k: &usize| cuts[*k].map_or(0.0, |cut: Cut| cut.gain);
         let best = (0..children.len()).max_by(|a, b| gain(a).total_cmp(&gain(b)));
-        let Some((at, cut_up)) = best.and_then(|k| Some((k, cuts[k].take()?))) else { return };
-        children[at] = cut_up.halves[0];
-        children.push(cut_up.halves[1]);
-        cuts[at] = cut(&children[at], bounds);
-        cuts.push(cut(&cut_up.halves[1], bounds));
+        let Some((at, Cut { halves, .. })) = best.and_then(|k| Some((k, cuts[k]?))) else { return };
+        children[at] = halves[0];
+        children.push(halves[1]);
+        cuts[at] = cut(&halves[0], bounds);
+        cuts[children.len() - 1] = cut(&halves[1], bounds);
     }
 }
 
@@ -51,25 +58,32 @@ pub(super) fn split(children: &mut Vec<ChildBox>, bounds: Bounds<'_>) {
 fn cut((whole, below): &ChildBox, bounds: Bounds<'_>) -> Option<Cut> {
     let Below::Leaf(leaf) = below else { return None };
     let count = leaf.ids().len();
-    // Spatial splits leave parts of primitives in the box.
-    let mut members: Vec<(u32, Aabb)> =
-        leaf.ids().iter().map(|&id| (id, bounds(id).intersection(*whole))).collect();
-    let union = |part: &[(u32, Aabb)]| part.iter().fold(Aabb::EMPTY, |all, (_, b)| all.union(*b));
+    let mut found = [(0, Aabb::EMPTY); WIDTH];
+    for (member, &id) in found.iter_mut().zip(leaf.ids()) {
+        // Spatial splits leave parts of primitives in the box.
+        *member = (id, bounds(id).intersection(*whole));
+    }
+    let cost = |bounds: Aabb, count: usize| bounds.half_area_f64() * count as f64;
     let mut best: Option<Cut> = None;
     for axis in 0..3 {
+        let members = &mut found[..count];
         let middle = |b: &Aabb| f64::from(b.min[axis]) + f64::from(b.max[axis]);
         members.sort_by(|a, b| middle(&a.1).total_cmp(&middle(&b.1)).then(a.0.cmp(&b.0)));
+        // The boxes of the members from each one on.
+        let mut after = [Aabb::EMPTY; WIDTH + 1];
+        for k in (0..count).rev() {
+            after[k] = after[k + 1].union(members[k].1);
+        }
+        let mut before = Aabb::EMPTY;
         for at in 1..count {
-            let parts = [&members[..at], &members[at..]];
-            let boxes = parts.map(union);
-            let cost = |k: usize| boxes[k].half_area_f64() * parts[k].len() as f64;
-            let gain = whole.half_area_f64() * count as f64 - cost(0) - cost(1);
-            if gain > best.as_ref().map_or(0.0, |best| best.gain) {
-                let half = |k: usize| {
-                    let ids: Vec<u32> = parts[k].iter().map(|(id, _)| *id).collect();
-                    (boxes[k], Below::Leaf(Leaf::of(&ids)))
-                };
-                best = Some(Cut { halves: [half(0), half(1)], gain });
+            before = before.union(members[at - 1].1);
+            let gain = cost(*whole, count) - cost(before, at) - cost(after[at], count - at);
+            if gain > best.map_or(0.0, |best| best.gain) {
+                let half = |part: &[(u32, Aabb)]| Leaf::of(part.iter().map(|(id, _)| *id));
+                let (first, second) = members.split_at(at);
+                let halves =
+                    [(before, Below::Leaf(half(first))), (after[at], Below::Leaf(half(second)))];
+                best = Some(Cut { halves, gain });
             }
         }
     }

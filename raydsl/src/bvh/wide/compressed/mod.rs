@@ -13,10 +13,12 @@ mod tests;
 #[cfg(any(test, feature = "counts"))]
 mod walk;
 
-use glam::Vec3;
+use bytemuck::Zeroable;
+use glam::{DVec3, Vec3};
 
 use super::Wide;
 use super::node::{Child, WIDTH, WideNode};
+use crate::bvh::build::tasks;
 use crate::geometry::Aabb;
 use crate::kernel;
 use crate::machine::{Field, Schema, WithoutNan};
@@ -80,44 +82,70 @@ pub(crate) struct Compressed {
 }
 
 /// Returns the bounds of a primitive.
-type Bounds<'a> = &'a dyn Fn(u32) -> Aabb;
+type Bounds<'a> = &'a (dyn Fn(u32) -> Aabb + Sync);
+
+/// A node whose place is not known yet.
+struct Planned {
+    node: CompressedNode,
+    /// The wide nodes below, in the order of their slots.
+    below: Vec<usize>,
+    ids: Vec<u32>,
+}
+
+/// Nodes per task.
+const PIECE: usize = 512;
 
 impl Compressed {
     pub(super) fn of(tree: &Wide, bounds: Bounds<'_>) -> Self {
-        let mut made = Self::default();
-        if tree.nodes.is_empty() {
-            return made;
-        }
-        made.nodes.resize(tree.nodes.len(), CompressedNode::of(&Slots::default()));
+        let plan = |_, nodes: &[WideNode]| {
+            nodes.iter().map(|node| Planned::of(tree, node, bounds)).collect::<Vec<_>>()
+        };
+        let planned: Vec<Planned> =
+            tasks::map_pieces(&tree.nodes, PIECE, plan).into_iter().flatten().collect();
+        let mut made = Self {
+            nodes: vec![Zeroable::zeroed(); planned.len()],
+            ids: Vec::with_capacity(tree.entries()),
+        };
+        let number = |n: usize| u32::try_from(n).expect("a wide tree has at most 2^29 blocks");
         let (mut next, mut pending) = (1, vec![(0, 0)]);
-        while let Some((node, place)) = pending.pop() {
-            let mut children = children_of(tree, &tree.nodes[node]);
-            leaf::split(&mut children, bounds);
-            let slots = slots_of(children);
-            let mut compressed = CompressedNode::of(&slots);
-            (compressed.first_node, compressed.first_leaf) = (next as u32, made.ids.len() as u32);
-            for (slot, child) in slots.iter().enumerate() {
-                match child {
-                    None => {}
-                    Some((_, Below::Node(index))) => {
-                        compressed.slots |= 1 << slot;
-                        pending.push((*index, next));
-                        next += 1;
-                    }
-                    Some((_, Below::Leaf(leaf))) => {
-                        compressed.slots |= 1 << (8 + slot);
-                        compressed.counts |= (leaf.ids().len() as u32) << (4 * slot);
-                        made.ids.extend_from_slice(leaf.ids());
-                    }
-                }
-            }
-            made.nodes[place] = compressed;
+        while let Some((from, place)) = pending.pop() {
+            let Some(Planned { node, below, ids }) = planned.get(from) else { break };
+            let (first_node, first_leaf) = (number(next), number(made.ids.len()));
+            made.nodes[place] = CompressedNode { first_node, first_leaf, ..*node };
+            made.ids.extend_from_slice(ids);
+            pending.extend(below.iter().zip(next..).map(|(&below, place)| (below, place)));
+            next += below.len();
         }
         made
     }
 
     pub(super) fn bytes(&self) -> usize {
         size_of_val(&self.nodes[..]) + size_of_val(&self.ids[..])
+    }
+}
+
+impl Planned {
+    fn of(tree: &Wide, node: &WideNode, bounds: Bounds<'_>) -> Self {
+        let mut children = children_of(tree, node);
+        leaf::split(&mut children, bounds);
+        let slots = slots_of(children);
+        let mut planned = Self { node: CompressedNode::of(&slots), below: vec![], ids: vec![] };
+        let node = &mut planned.node;
+        for (slot, child) in slots.iter().enumerate() {
+            match child {
+                None => {}
+                Some((_, Below::Node(index))) => {
+                    node.slots |= 1 << slot;
+                    planned.below.push(*index);
+                }
+                Some((_, Below::Leaf(leaf))) => {
+                    node.slots |= 1 << (8 + slot);
+                    node.counts |= (leaf.ids().len() as u32) << (4 * slot);
+                    planned.ids.extend_from_slice(leaf.ids());
+                }
+            }
+        }
+        planned
     }
 }
 
@@ -139,7 +167,7 @@ fn children_of(tree: &Wide, node: &WideNode) -> Vec<ChildBox> {
     let child = |slot: usize| match Child(node.children[slot]) {
         Child::NONE => None,
         child if child.is_block() => {
-            let leaf = Leaf::of(tree.blocks.members(child.index()));
+            let leaf = Leaf::of(tree.blocks.members(child.index()).iter().copied());
             Some((node.bounds(slot), Below::Leaf(leaf)))
         }
         child => Some((node.bounds(slot), Below::Node(child.index()))),
@@ -177,17 +205,16 @@ struct Grid {
 }
 
 impl Grid {
-    /// Returns the finest grid over these spans whose planes are floats, without rounding: a device
-    /// computes them exactly, fused or not.
+    /// Returns the finest grid over these spans whose planes, up to the one behind the last span, are
+    /// floats: a device computes them exactly, fused or not. There is a span.
     fn over<'s>(spans: impl Iterator<Item = &'s [f32; 2]>) -> Self {
         let union = |[low, high]: [f32; 2], span: &[f32; 2]| [low.min(span[0]), high.max(span[1])];
         let [low, high] = spans.fold([f32::INFINITY, f32::NEG_INFINITY], union);
-        if low > high {
-            return Self { corner: 0.0, exponent: 1 };
-        }
         let largest = low.abs().max(high.abs());
         // From the last bit of the largest coordinate on; cells are no smaller than normal numbers.
-        let finest = (largest.to_bits() >> 23).saturating_sub(23).max(1);
+        let last_bit = (largest.to_bits() >> 23).saturating_sub(23);
+        let extent = (high / 256.0 - low / 256.0).to_bits() >> 23;
+        let finest = last_bit.max(extent).max(1);
         for exponent in finest..255 {
             let cell = f64::from(f32::from_bits(exponent << 23));
             // Multiples of the cell below the greatest float are floats.
@@ -231,11 +258,11 @@ fn slots_of(mut left: Vec<ChildBox>) -> Slots {
     // In f64, where sums and differences of floats are finite.
     let middle = |b: Aabb| (b.min.as_dvec3() + b.max.as_dvec3()) * 0.5;
     let center = middle(left.iter().fold(Aabb::EMPTY, |all, child| all.union(child.0)));
+    let mut offsets: Vec<DVec3> = left.iter().map(|child| middle(child.0) - center).collect();
     let mut slots = Slots::default();
     while !left.is_empty() {
         let mut best = (f64::NEG_INFINITY, 0, 0);
-        for (at, (bounds, _)) in left.iter().enumerate() {
-            let offset = middle(*bounds) - center;
+        for (at, offset) in offsets.iter().enumerate() {
             for (slot, _) in slots.iter().enumerate().filter(|(_, taken)| taken.is_none()) {
                 let side = |axis: usize| if slot >> axis & 1 == 1 { 1.0 } else { -1.0 };
                 let agrees = offset.x * side(0) + offset.y * side(1) + offset.z * side(2);
@@ -245,6 +272,7 @@ fn slots_of(mut left: Vec<ChildBox>) -> Slots {
             }
         }
         slots[best.2] = Some(left.swap_remove(best.1));
+        offsets.swap_remove(best.1);
     }
     slots
 }

@@ -47,7 +47,7 @@ impl<P: Primitive> Bvh<'_, P> {
     /// nodes that it reads, each with eight boxes, and the primitives. None if the tree is not wide.
     #[doc(hidden)]
     pub fn hit_on_device(&self, ray: Ray, is_any: bool) -> Option<(Hit, Cost)> {
-        let wide = self.tree.own.structure.wide()?;
+        let wide = self.tree.own.structure.wide().filter(|wide| wide.is_for_devices())?;
         let tree = wide.compressed(self.tree.prims, self.tree.shared);
         let (mut best, mut cost, mut limit) = (Hit::miss(), Cost::default(), ray.t_max);
         if tree.nodes.is_empty() || !is_finite(ray) {
@@ -58,6 +58,7 @@ impl<P: Primitive> Bvh<'_, P> {
         let end = corner + 255.0 * cell_sizes(root.exponents);
         let s = slabs(false, ray, corner, end, P::SLACK, 0.0);
         let (mut at, mut stack) = (0, Vec::new());
+        let octant = ray.direction.cmplt(Vec3::ZERO).bitmask();
         loop {
             cost.nodes += 1;
             let node = &tree.nodes[at];
@@ -77,18 +78,25 @@ impl<P: Primitive> Bvh<'_, P> {
                     }
                 }
             }
-            // The children that are nodes, the nearest one on top.
-            let is_node = |slot: &usize| (node.slots & entered) >> slot & 1 == 1;
-            let children: Vec<usize> = CompressedNode::order(&ray).filter(is_node).collect();
-            let place = |slot: usize| {
-                let before = node.slots & ((1 << slot) - 1);
-                node.first_node as usize + before.count_ones() as usize
-            };
-            stack.extend(children.into_iter().rev().map(place));
-            match stack.pop() {
-                Some(next) => at = next,
-                None => return Some((best, cost)),
+            // The children that are left of a node: the first of them all, the slots that the ray
+            // enters, in its order, and all slots of nodes.
+            let inner = (0..8).filter(|i| (node.slots & entered) >> (i ^ octant) & 1 == 1);
+            let mut group =
+                (node.first_node, inner.fold(0, |all, i| all | 1 << i), node.slots & 255);
+            if group.1 == 0 {
+                match stack.pop() {
+                    Some(before) => group = before,
+                    None => return Some((best, cost)),
+                }
             }
+            let (first, mut left, slots): (u32, u32, u32) = group;
+            let slot = left.trailing_zeros() ^ octant;
+            left &= left - 1;
+            if left != 0 {
+                stack.push((first, left, slots));
+                assert!(stack.len() < wide.levels(), "a group for each level but the last");
+            }
+            at = (first + (slots & ((1 << slot) - 1)).count_ones()) as usize;
         }
     }
 }
