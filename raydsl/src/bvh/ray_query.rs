@@ -278,8 +278,8 @@ pub trait RecordQuery: Sync {
     }
 
     /// Finds the least `(t, id)` hit of `ray`, and the cost of the traversal. In kernels all
-    /// variants count the nodes of a single-ray traversal, and a device tests every primitive of an
-    /// [`Accelerated`].
+    /// variants count the nodes of a single ray's traversal of the binary tree, and a device tests
+    /// every primitive of an [`Accelerated`].
     fn closest_hit_with_cost(&self, ray: Ray) -> (Self::Hit, Cost) {
         self.view().closest_hit_with_cost_of(ray)
     }

@@ -116,7 +116,8 @@ impl<P: Primitive<Shared = ()>> DetachedBvh<P> {
     /// the more primitives have left their neighbours: see [`Bvh::cost_growth`]. After Wald, Boulos
     /// and Shirley, *Ray tracing deformable scenes using dynamic bounding volume hierarchies* (ACM
     /// Transactions on Graphics 26(1), 2007), section 3.2. A device that has the tree gets its
-    /// primitives, their shared data and the nodes anew, but not the index list.
+    /// primitives, their shared data and the nodes anew, but not the index list; it traverses a
+    /// refitted wide tree as a binary one.
     ///
     /// # Errors
     ///
