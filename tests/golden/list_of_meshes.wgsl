@@ -7,16 +7,16 @@ struct Hit {
     v: f32,
 }
 
-struct Lost {
-    most: vec3<f32>,
-    rest: vec3<f32>,
-}
-
 struct Ray {
     origin: vec3<f32>,
     direction: vec3<f32>,
     t_min: f32,
     t_max: f32,
+}
+
+struct Lost {
+    most: vec3<f32>,
+    rest: vec3<f32>,
 }
 
 struct IndexedTriangle {
@@ -86,8 +86,8 @@ struct StoredTuple {
 
 struct Params {
     lit_4097_0: f32,
-    len_of_meshes_shared: u32,
     len_of_meshes_nodes: u32,
+    len_of_meshes_shared: u32,
     len_of_meshes_roots: u32,
 }
 
@@ -109,7 +109,19 @@ fn meshes_at(i: u32) -> IndexedTriangle {
     return IndexedTriangle(array<u32, 3>(s.vertices_0, s.vertices_1, s.vertices_2));
 }
 
-@group(0) @binding(5) var<storage, read> meshes_shared: array<StoredVec3>;
+@group(0) @binding(5) var<storage, read> meshes_nodes: array<Node>;
+
+fn meshes_nodes_at(i: u32) -> Node {
+    return meshes_nodes[i];
+}
+
+@group(0) @binding(6) var<storage, read> meshes_ids: array<u32>;
+
+fn meshes_ids_at(i: u32) -> u32 {
+    return meshes_ids[i];
+}
+
+@group(0) @binding(7) var<storage, read> meshes_shared: array<StoredVec3>;
 
 fn meshes_shared_at(i: u32) -> vec3<f32> {
     let s = meshes_shared[i];
@@ -121,22 +133,23 @@ fn meshes_shared_element(i: u32) -> vec3<f32> {
     return meshes_shared_at(min(i, max(params.len_of_meshes_shared, 1u) - 1u));
 }
 
-@group(0) @binding(6) var<storage, read> meshes_nodes: array<Node>;
-
-fn meshes_nodes_at(i: u32) -> Node {
-    return meshes_nodes[i];
-}
-
-@group(0) @binding(7) var<storage, read> meshes_ids: array<u32>;
-
-fn meshes_ids_at(i: u32) -> u32 {
-    return meshes_ids[i];
-}
-
 @group(0) @binding(8) var<storage, read> meshes_roots: array<u32>;
 
 fn meshes_roots_at(i: u32) -> u32 {
     return meshes_roots[i];
+}
+
+fn is_within(hit: Hit, ray: Ray) -> bool {
+    return hit.is_hit && (hit.t >= ray.t_min && hit.t <= ray.t_max);
+}
+
+fn precedes(hit: Hit, other: Hit) -> bool {
+    let is_first = hit.prim_id < other.prim_id;
+    return hit.t < other.t || (hit.t == other.t && is_first);
+}
+
+fn is_before(hit: Hit, best: Hit) -> bool {
+    return !best.is_hit || precedes(hit, best);
 }
 
 fn axis_last(v: vec3<f32>, k: u32) -> vec3<f32> {
@@ -279,19 +292,6 @@ fn intersect(ray: Ray, v0: vec3<f32>, v1: vec3<f32>, v2: vec3<f32>) -> Hit {
 
 fn IndexedTriangle_intersect(self_: IndexedTriangle, ray: Ray) -> Hit {
     return intersect(ray, meshes_shared_element(self_.vertices[0]), meshes_shared_element(self_.vertices[1]), meshes_shared_element(self_.vertices[2]));
-}
-
-fn is_within(hit: Hit, ray: Ray) -> bool {
-    return hit.is_hit && (hit.t >= ray.t_min && hit.t <= ray.t_max);
-}
-
-fn precedes(hit: Hit, other: Hit) -> bool {
-    let is_first = hit.prim_id < other.prim_id;
-    return hit.t < other.t || (hit.t == other.t && is_first);
-}
-
-fn is_before(hit: Hit, best: Hit) -> bool {
-    return !best.is_hit || precedes(hit, best);
 }
 
 fn are_finite(v: vec3<f32>) -> bool {

@@ -1,3 +1,10 @@
+struct Ray {
+    origin: vec3<f32>,
+    direction: vec3<f32>,
+    t_min: f32,
+    t_max: f32,
+}
+
 struct Hit {
     is_hit: bool,
     t: f32,
@@ -7,23 +14,16 @@ struct Hit {
     v: f32,
 }
 
-struct Ray {
-    origin: vec3<f32>,
-    direction: vec3<f32>,
-    t_min: f32,
-    t_max: f32,
+struct Slabs {
+    lower: vec3<f32>,
+    upper: vec3<f32>,
+    inverse: vec3<f32>,
 }
 
 struct ColorSphere {
     center: vec3<f32>,
     radius: u32,
     color: array<u32, 3>,
-}
-
-struct Slabs {
-    lower: vec3<f32>,
-    upper: vec3<f32>,
-    inverse: vec3<f32>,
 }
 
 struct Node {
@@ -142,29 +142,6 @@ fn bvh_ids_at(i: u32) -> u32 {
     return bvh_ids[i];
 }
 
-fn Hit_new(is_hit: bool, t: f32) -> Hit {
-    return Hit(is_hit, t, 0u, 0u, 0.0f, 0.0f);
-}
-
-fn intersect(ray: Ray, center: vec3<f32>, radius: f32) -> Hit {
-    let f = center - ray.origin;
-    let per_d2 = 1.0f / (ray.direction.x * ray.direction.x + ray.direction.y * ray.direction.y + ray.direction.z * ray.direction.z);
-    let closest = (f.x * ray.direction.x + f.y * ray.direction.y + f.z * ray.direction.z) * per_d2;
-    let aside = f - ray.direction * closest;
-    let distance = sqrt(aside.x * aside.x + aside.y * aside.y + aside.z * aside.z);
-    let radicand = (radius - distance) * (radius + distance);
-    let half = sqrt(radicand * per_d2);
-    let near = closest - half;
-    let far = closest + half;
-    let t = select(near, far, (near < ray.t_min));
-    let is_hit = radicand >= 0.0f && radius > 0.0f && t >= ray.t_min && t <= ray.t_max;
-    return Hit_new(is_hit, t);
-}
-
-fn ColorSphere_intersect(self_: ColorSphere, ray: Ray) -> Hit {
-    return intersect(ray, self_.center, f32(self_.radius) / params.lit_255_0);
-}
-
 fn are_finite(v: vec3<f32>) -> bool {
     return (bitcast<u32>(v.x) & 2147483647u) < 2139095040u && (bitcast<u32>(v.y) & 2147483647u) < 2139095040u && (bitcast<u32>(v.z) & 2147483647u) < 2139095040u;
 }
@@ -225,6 +202,29 @@ fn enter_leave(s: Slabs, low: vec3<f32>, high: vec3<f32>, t_min: f32, t_max: f32
     let a = (low - s.lower) * s.inverse;
     let b = (high - s.upper) * s.inverse;
     return overlap(min(a, b), max(a, b), t_min, t_max);
+}
+
+fn Hit_new(is_hit: bool, t: f32) -> Hit {
+    return Hit(is_hit, t, 0u, 0u, 0.0f, 0.0f);
+}
+
+fn intersect(ray: Ray, center: vec3<f32>, radius: f32) -> Hit {
+    let f = center - ray.origin;
+    let per_d2 = 1.0f / (ray.direction.x * ray.direction.x + ray.direction.y * ray.direction.y + ray.direction.z * ray.direction.z);
+    let closest = (f.x * ray.direction.x + f.y * ray.direction.y + f.z * ray.direction.z) * per_d2;
+    let aside = f - ray.direction * closest;
+    let distance = sqrt(aside.x * aside.x + aside.y * aside.y + aside.z * aside.z);
+    let radicand = (radius - distance) * (radius + distance);
+    let half = sqrt(radicand * per_d2);
+    let near = closest - half;
+    let far = closest + half;
+    let t = select(near, far, (near < ray.t_min));
+    let is_hit = radicand >= 0.0f && radius > 0.0f && t >= ray.t_min && t <= ray.t_max;
+    return Hit_new(is_hit, t);
+}
+
+fn ColorSphere_intersect(self_: ColorSphere, ray: Ray) -> Hit {
+    return intersect(ray, self_.center, f32(self_.radius) / params.lit_255_0);
 }
 
 fn bvh_closest_hit(ray: Ray) -> Hit {

@@ -1,3 +1,10 @@
+struct Ray {
+    origin: vec3<f32>,
+    direction: vec3<f32>,
+    t_min: f32,
+    t_max: f32,
+}
+
 struct Hit {
     is_hit: bool,
     t: f32,
@@ -7,28 +14,21 @@ struct Hit {
     v: f32,
 }
 
+struct Slabs {
+    lower: vec3<f32>,
+    upper: vec3<f32>,
+    inverse: vec3<f32>,
+}
+
 struct Lost {
     most: vec3<f32>,
     rest: vec3<f32>,
-}
-
-struct Ray {
-    origin: vec3<f32>,
-    direction: vec3<f32>,
-    t_min: f32,
-    t_max: f32,
 }
 
 struct Triangle {
     v0: vec3<f32>,
     v1: vec3<f32>,
     v2: vec3<f32>,
-}
-
-struct Slabs {
-    lower: vec3<f32>,
-    upper: vec3<f32>,
-    inverse: vec3<f32>,
 }
 
 struct Node {
@@ -97,6 +97,68 @@ fn walls_nodes_at(i: u32) -> Node {
 
 fn walls_ids_at(i: u32) -> u32 {
     return walls_ids[i];
+}
+
+fn are_finite(v: vec3<f32>) -> bool {
+    return (bitcast<u32>(v.x) & 2147483647u) < 2139095040u && (bitcast<u32>(v.y) & 2147483647u) < 2139095040u && (bitcast<u32>(v.z) & 2147483647u) < 2139095040u;
+}
+
+fn is_finite(ray: Ray) -> bool {
+    return are_finite(ray.origin) && are_finite(ray.direction);
+}
+
+fn is_within(hit: Hit, ray: Ray) -> bool {
+    return hit.is_hit && (hit.t >= ray.t_min && hit.t <= ray.t_max);
+}
+
+fn precedes(hit: Hit, other: Hit) -> bool {
+    let is_first = hit.prim_id < other.prim_id;
+    return hit.t < other.t || (hit.t == other.t && is_first);
+}
+
+fn is_before(hit: Hit, best: Hit) -> bool {
+    return !best.is_hit || precedes(hit, best);
+}
+
+fn limit_behind(t: f32, slack: f32, t_max: f32) -> f32 {
+    let t_1 = t + abs(t) * slack;
+    return select(t_max, t_1, t_1 < t_max);
+}
+
+fn largest(v: vec3<f32>) -> f32 {
+    return max(max(v.x, v.y), v.z);
+}
+
+fn negligible(d: vec3<f32>) -> f32 {
+    return max(largest(abs(d)) * 8.6736174e-19f, 1.1754944e-38f);
+}
+
+fn at_least(x: f32, size: f32) -> f32 {
+    let signed = select(size, -size, (x < 0.0f));
+    return select(x, signed, (abs(x) < size));
+}
+
+fn finite_inverse(d: vec3<f32>) -> vec3<f32> {
+    let least = negligible(d);
+    return 1.0f / vec3<f32>(at_least(d.x, least), at_least(d.y, least), at_least(d.z, least));
+}
+
+fn slabs(ray: Ray, low: vec3<f32>, high: vec3<f32>, slack: f32, origin: f32) -> Slabs {
+    let reach = max(abs(low - ray.origin), abs(high - ray.origin));
+    let padding = max(slack * largest(reach), 1.1754944e-38f);
+    let distant = abs(ray.origin);
+    let padding_1 = distant * 1.1920929e-7f + padding;
+    return Slabs(ray.origin + padding_1, ray.origin - padding_1, finite_inverse(ray.direction));
+}
+
+fn overlap(near: vec3<f32>, far: vec3<f32>, t_min: f32, t_max: f32) -> vec2<f32> {
+    return vec2<f32>(max(max(near.x, near.y), max(t_min, near.z)), min(min(far.x, far.y), min(t_max, far.z)));
+}
+
+fn enter_leave(s: Slabs, low: vec3<f32>, high: vec3<f32>, t_min: f32, t_max: f32) -> vec2<f32> {
+    let a = (low - s.lower) * s.inverse;
+    let b = (high - s.upper) * s.inverse;
+    return overlap(min(a, b), max(a, b), t_min, t_max);
 }
 
 fn axis_last(v: vec3<f32>, k: u32) -> vec3<f32> {
@@ -239,68 +301,6 @@ fn intersect(ray: Ray, v0: vec3<f32>, v1: vec3<f32>, v2: vec3<f32>) -> Hit {
 
 fn Triangle_intersect(self_: Triangle, ray: Ray) -> Hit {
     return intersect(ray, self_.v0, self_.v1, self_.v2);
-}
-
-fn are_finite(v: vec3<f32>) -> bool {
-    return (bitcast<u32>(v.x) & 2147483647u) < 2139095040u && (bitcast<u32>(v.y) & 2147483647u) < 2139095040u && (bitcast<u32>(v.z) & 2147483647u) < 2139095040u;
-}
-
-fn is_finite(ray: Ray) -> bool {
-    return are_finite(ray.origin) && are_finite(ray.direction);
-}
-
-fn is_within(hit: Hit, ray: Ray) -> bool {
-    return hit.is_hit && (hit.t >= ray.t_min && hit.t <= ray.t_max);
-}
-
-fn precedes(hit: Hit, other: Hit) -> bool {
-    let is_first = hit.prim_id < other.prim_id;
-    return hit.t < other.t || (hit.t == other.t && is_first);
-}
-
-fn is_before(hit: Hit, best: Hit) -> bool {
-    return !best.is_hit || precedes(hit, best);
-}
-
-fn limit_behind(t: f32, slack: f32, t_max: f32) -> f32 {
-    let t_1 = t + abs(t) * slack;
-    return select(t_max, t_1, t_1 < t_max);
-}
-
-fn largest(v: vec3<f32>) -> f32 {
-    return max(max(v.x, v.y), v.z);
-}
-
-fn negligible(d: vec3<f32>) -> f32 {
-    return max(largest(abs(d)) * 8.6736174e-19f, 1.1754944e-38f);
-}
-
-fn at_least(x: f32, size: f32) -> f32 {
-    let signed = select(size, -size, (x < 0.0f));
-    return select(x, signed, (abs(x) < size));
-}
-
-fn finite_inverse(d: vec3<f32>) -> vec3<f32> {
-    let least = negligible(d);
-    return 1.0f / vec3<f32>(at_least(d.x, least), at_least(d.y, least), at_least(d.z, least));
-}
-
-fn slabs(ray: Ray, low: vec3<f32>, high: vec3<f32>, slack: f32, origin: f32) -> Slabs {
-    let reach = max(abs(low - ray.origin), abs(high - ray.origin));
-    let padding = max(slack * largest(reach), 1.1754944e-38f);
-    let distant = abs(ray.origin);
-    let padding_1 = distant * 1.1920929e-7f + padding;
-    return Slabs(ray.origin + padding_1, ray.origin - padding_1, finite_inverse(ray.direction));
-}
-
-fn overlap(near: vec3<f32>, far: vec3<f32>, t_min: f32, t_max: f32) -> vec2<f32> {
-    return vec2<f32>(max(max(near.x, near.y), max(t_min, near.z)), min(min(far.x, far.y), min(t_max, far.z)));
-}
-
-fn enter_leave(s: Slabs, low: vec3<f32>, high: vec3<f32>, t_min: f32, t_max: f32) -> vec2<f32> {
-    let a = (low - s.lower) * s.inverse;
-    let b = (high - s.upper) * s.inverse;
-    return overlap(min(a, b), max(a, b), t_min, t_max);
 }
 
 fn walls_closest_hit(ray: Ray) -> Hit {

@@ -32,7 +32,7 @@ use lit::{
 };
 pub(crate) use lit::{diffuse_path, lit_triangles, open_sky};
 pub(crate) use primitives::{Face, colors};
-use primitives::{coordinates, cost, depth, few, instances, kinds, layers, points};
+use primitives::{coordinates, cost, depth, few, instances, kinds, layers, points, wide};
 
 /// What may go wrong while a scene is made.
 type Made = Result<Recording, Box<dyn Error>>;
@@ -64,6 +64,7 @@ pub(crate) fn all() -> Vec<Scene> {
         scene("plain numbers", "", plain),
         scene("points", "sphere, tree, closest hit", points),
         scene("depth", "triangle, tree, closest hit", depth),
+        scene("wide tree", "triangle, tree, wide tree, closest hit", wide),
         scene("few triangles", "triangle, any hit", few),
         scene("instances", "triangle, tree, instances", instances),
         scene("kinds", "sphere, disk, tree, closest hit", kinds),

@@ -33,6 +33,12 @@ pub(super) fn depth() -> Made {
     Ok(recorded!(distance(bvh)(ray: Ray) -> f32))
 }
 
+pub(super) fn wide() -> Made {
+    let soup = triangles(80);
+    let bvh = &Bvh::build_wide(&soup, &[], &BuildConfig::default())?;
+    Ok(recorded!(distance(bvh)(ray: Ray) -> f32))
+}
+
 #[kernel]
 pub(super) fn is_hit(few: &[Triangle], ray: Ray) -> bool {
     few.any_hit(ray)
