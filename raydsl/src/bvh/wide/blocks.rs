@@ -36,10 +36,12 @@ pub(super) const fn has_boxes<P: Primitive>() -> bool {
     !P::IS_SHORT
 }
 
+/// Fills a block with the primitives of these ids; the bytes are scratch space for one of them.
+type Fill<'a> = &'a (dyn Fn(&mut [Row], &[u32], &mut [u8]) + Sync);
+
 /// What blocks are filled with.
 struct Contents<'a> {
-    /// Fills a block with the primitives of these ids; the bytes are scratch space for one of them.
-    fill: &'a (dyn Fn(&mut [Row], &[u32], &mut [u8]) + Sync),
+    fill: Fill<'a>,
     /// Has the primitives of these ids fetched, which are wanted soon.
     prefetch: &'a (dyn Fn(&[u32]) + Sync),
 }
