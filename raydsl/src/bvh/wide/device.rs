@@ -94,11 +94,11 @@ fn bytes_in<'a>(trees: &[(&'a Compressed, u32)], part: u32) -> Option<Cow<'a, [u
     let (mut nodes, mut entries, mut bytes) = (0, 0, Vec::new());
     for (tree, first) in trees {
         match part {
-            buffers::WIDE_NODES => bytes.extend(tree.nodes.iter().flat_map(|node| {
+            buffers::WIDE_NODES => tree.nodes.iter().for_each(|node| {
                 let (first_node, first_leaf) = (node.first_node + nodes, node.first_leaf + entries);
                 let node = CompressedNode { first_node, first_leaf, ..*node };
-                bytemuck::cast::<_, [u8; size_of::<CompressedNode>()]>(node)
-            })),
+                bytes.extend_from_slice(bytemuck::bytes_of(&node));
+            }),
             buffers::LEAF_IDS => {
                 bytes.extend(tree.ids.iter().flat_map(|id| (id + first).to_le_bytes()))
             }
