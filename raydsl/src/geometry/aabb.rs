@@ -45,7 +45,6 @@ impl Aabb {
 
     /// Returns the smallest `f32` box that contains the sphere around `center`: the faces are
     /// rounded outwards, so the box is never too small and at most one ulp too large.
-    #[inline]
     pub fn from_sphere(center: Vec3, radius: f32) -> Self {
         let down = |x: f32| (x - radius).next_down();
         let up = |x: f32| (x + radius).next_up();

@@ -79,7 +79,6 @@ macro_rules! scalar_type {
                 M::$lane(&v.0, lane)
             }
 
-            #[inline]
             fn write(&self, out: &mut [u8]) {
                 out[..size_of::<Self>()].copy_from_slice(bytemuck::bytes_of(self));
             }
@@ -156,7 +155,6 @@ macro_rules! vector_type {
                 Self::new($(<$element as Type>::lane(&v.$c, lane)),+)
             }
 
-            #[inline]
             fn write(&self, out: &mut [u8]) {
                 let each = out.chunks_exact_mut(size_of::<$element>());
                 for (v, out) in [$(self.$c),+].iter().zip(each) {
