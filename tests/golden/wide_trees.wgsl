@@ -26,7 +26,7 @@ struct ColorSphere {
     color: array<u32, 3>,
 }
 
-struct WideNode {
+struct CompressedNode {
     corner: vec3<f32>,
     exponents: u32,
     first_node: u32,
@@ -83,9 +83,9 @@ struct Job {
 @group(0) @binding(0) var<uniform> params: Params;
 @group(0) @binding(1) var<uniform> job: Job;
 
-@group(0) @binding(4) var<storage, read> points_wide_nodes: array<WideNode>;
+@group(0) @binding(4) var<storage, read> points_wide_nodes: array<CompressedNode>;
 
-fn points_wide_nodes_at(i: u32) -> WideNode {
+fn points_wide_nodes_at(i: u32) -> CompressedNode {
     return points_wide_nodes[i];
 }
 

@@ -328,7 +328,7 @@ macro_rules! assert_on_devices {
         let kernel = kernel!(|ray: Ray| (scene.closest_hit(ray), scene.any_hit(ray)));
         assert_variants_agree!(&kernel, $rays);
         let text = kernel.wgsl();
-        let has = [text.contains("struct WideNode "), text.contains("struct Node ")];
+        let has = [text.contains("struct CompressedNode "), text.contains("struct Node ")];
         assert_eq!(has, [$is_wide, !$is_wide], "{text}");
     }};
 }

@@ -2,9 +2,15 @@
 //! distance behind a hit, and the box test.
 //!
 //! Each rule is a kernel; those that do not depend on trees are in `geometry::slabs`. Single-ray
-//! traversal calls the function; packets, WGSL and the rounding bounds run its lifted body. Three
-//! places have their own box arithmetic, for reasons given there: [`SiblingSlabs`], of two boxes of
-//! a binary tree, `wide::step`, of eight boxes, and `on::beam`, in `f64` with bounds.
+//! traversal calls the function; packets, WGSL and the rounding bounds run its lifted body. These
+//! places have their own box arithmetic:
+//!
+//! * [`SiblingSlabs`]: the two boxes of siblings side by side in registers;
+//! * `packet_slabs`: a node's planes are the same for all lanes;
+//! * `wide::rays`, `wide::step` and `wide::packet`: planes are multiplied before the origin is
+//!   subtracted, one multiply-add each, which takes more padding;
+//! * `wide::beam`: intervals of many rays, in the same form;
+//! * `on::beam`: in `f64`, with bounds.
 //!
 //! **Boxes.** A box test must never lose a hit that `intersect` accepts. The ray's origin is moved
 //! apart by a padding, once a ray: lower faces are measured from the upper origin and vice versa.
@@ -107,7 +113,9 @@ impl Padding {
     /// Returns the padding of a tree over these primitives.
     #[inline(always)]
     pub(crate) const fn of<P: Primitive>() -> Self {
-        Self { slack: P::SLACK, origin: 0.0 }
+        // Not 0: a distance that overflows makes the padding infinite, and not a NaN.
+        let slack = if P::SLACK > 0.0 { P::SLACK } else { f32::MIN_POSITIVE };
+        Self { slack, origin: 0.0 }
     }
 }
 

@@ -37,6 +37,9 @@ use crate::machine::{Capture, Machine, Owner, Parameter, Resource};
 /// assert_eq!(scene.primitive(hit).center.z, 3.0);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
+///
+/// Queries traverse the list as wide if all trees that have primitives [are](Bvh::is_wide). On a device
+/// a [refitted](Bvh::refit) tree is binary, and so are the others of its list then.
 #[derive(Debug)]
 pub struct BvhList<'a, P: Primitive> {
     trees: Trees<'a, P, P::Shared>,
@@ -88,8 +91,10 @@ impl<'a, P: Primitive> BvhList<'a, P> {
         };
         let parts = trees.iter().map(part).collect();
         let kinds = trees.iter().fold(Kinds::NONE, |all, tree| all.union(tree.tree.kinds));
-        let is_wide = trees.iter().all(Bvh::is_wide);
-        let queries = trees.first().filter(|_| is_wide).and_then(|tree| tree.tree.queries);
+        // A tree without primitives is neither wide nor binary.
+        let mut filled = trees.iter().filter(|tree| !tree.primitives().is_empty());
+        let is_wide = filled.clone().all(Bvh::is_wide);
+        let queries = filled.find_map(|tree| tree.tree.queries).filter(|_| is_wide);
         Ok(Self { trees: Trees { parts, shared, owner: Owner::new(), kinds, queries } })
     }
 

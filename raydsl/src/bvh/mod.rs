@@ -191,7 +191,10 @@ impl<'a, P: Primitive> Bvh<'a, P> {
     ///
     /// On a device, closest-hit and any-hit queries of the tree, or of a list of such trees, read
     /// nodes of 80 bytes with boxes of eight bits a side, and copies of the primitives in the order of
-    /// the leaves, unless it was refitted or a coordinate exceeds 4e37. On a machine without AVX2 and NEON, and for fewer primitives than
+    /// the leaves, unless it was refitted or a coordinate exceeds 4e37. One such tree makes a device
+    /// read all trees of its list as binary ones.
+    ///
+    /// On a machine without AVX2, NEON and simd128, and for fewer primitives than
     /// [`BuildConfig::min_wide_size`], the tree is a binary one without copies. Traversals of wide
     /// trees are a lot of code: a program that calls this takes rustc some seconds more for each
     /// type of primitive.

@@ -15,6 +15,7 @@ use core::cell::Cell;
 
 use glam::{Affine3, Vec3};
 
+use super::contract::Padding;
 use super::wide::trace;
 use super::{
     CountedHit, CountedHitOn, RecordOn, SceneView, View, nearest_counted, traverse, traverse_packet,
@@ -294,7 +295,7 @@ impl<P: Primitive> Operation for Slack<'_, '_, P> {
         match self.0.placed() {
             // A buffer value, since it changes when instances move.
             Some(_) => m.slack_of_places(self.0),
-            None => F(m.f32(P::SLACK)),
+            None => F(m.f32(Padding::of::<P>().slack)),
         }
     }
 

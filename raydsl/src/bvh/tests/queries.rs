@@ -49,3 +49,37 @@ fn every_quality_answers_as_brute_force_on_hostile_scenes() {
         }
     }
 }
+
+/// A wall across the x axis, whose distance is exact.
+#[primitive]
+#[derive(Debug)]
+struct Wall {
+    x: f32,
+    size: f32,
+}
+
+#[primitive]
+impl Wall {
+    const SLACK: f32 = 0.0;
+
+    fn intersect(&self, ray: Ray) -> Hit {
+        let (to_wall, to_origin) = (self.x / ray.direction.x, ray.origin.x / ray.direction.x);
+        Hit::new(true, to_wall - to_origin)
+    }
+
+    fn get_bounds(&self) -> Aabb {
+        Aabb::new(vec3(self.x, -self.size, -self.size), vec3(self.x, self.size, self.size))
+    }
+}
+
+/// The distance to the scene is infinite as a float, and the primitives ask for no padding.
+#[test]
+fn walls_without_slack_are_hit_from_farther_than_floats_reach() {
+    let walls = [0.0, -1.0, -2.0].map(|x| Wall { x: x * 1e38, size: 1e38 });
+    let ray = Ray::new(vec3(2e38, 0.0, 0.0), vec3(-1e38, 0.0, 0.0));
+    let bvh = Bvh::build(&walls).expect("finite bounds");
+    let hit = bvh.closest_hit(ray);
+    assert_eq!((hit.t, hit.prim_id), (2.0, 0));
+    let farther = Ray { t_min: 2.5, ..ray };
+    assert_eq!(bvh.closest_hit(farther).prim_id, 1);
+}

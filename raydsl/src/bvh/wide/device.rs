@@ -5,13 +5,14 @@ use std::borrow::Cow;
 use bytemuck::cast_slice;
 
 use super::compressed::{COMPRESSED_SCHEMA, Compressed, CompressedNode};
+use crate::bvh::build::tasks;
 use crate::bvh::{Part, View, buffers};
-use crate::machine::{Data, Schema, Type, bytes_of};
+use crate::machine::{Data, Schema, Type, stride};
 
 /// The buffers of wide trees as devices read them.
 pub(crate) struct WideBuffers {
-    /// Entries that a traversal's stack needs, rounded up: trees of about the same depth have the same
-    /// text.
+    /// Entries of a traversal's stack: one for each level but the last, rounded up, so that trees of
+    /// about the same depth have the same text.
     pub(crate) stack: usize,
     pub(crate) nodes: WideBuffer,
     /// The primitives in leaves, in the order of the tree.
@@ -58,7 +59,7 @@ impl<'a, T: Type, S> View<'a, T, S> {
         };
         let roots = || buffer(buffers::WIDE_ROOTS, "wide_roots", &Schema::U32, self.root_len());
         Some(WideBuffers {
-            stack: levels.next_multiple_of(8).max(8),
+            stack: levels.saturating_sub(1).next_multiple_of(8).max(8),
             nodes: buffer(buffers::WIDE_NODES, "wide_nodes", COMPRESSED_SCHEMA, nodes),
             leaves: buffer(buffers::LEAVES, "leaves", T::SCHEMA, entries),
             ids: buffer(buffers::LEAF_IDS, "leaf_ids", &Schema::U32, entries),
@@ -76,10 +77,29 @@ impl<'a, T: Type, S> View<'a, T, S> {
             let trees = self.parts().filter_map(|part| Some((of_part(part)?, first(&part))));
             return bytes_in(&trees.collect::<Vec<_>>(), part);
         }
-        let leaves = self.parts().filter_map(|part| Some((of_part(part)?, part.prims)));
-        let leaves = leaves.flat_map(|(tree, prims)| tree.ids.iter().map(|id| prims[*id as usize]));
-        Some(Cow::Owned(bytes_of(&leaves.collect::<Vec<T>>())))
+        let leaves = self.parts().filter_map(|part| Some((&of_part(part)?.ids[..], part.prims)));
+        Some(Cow::Owned(leaf_bytes(&leaves.collect::<Vec<_>>())))
     }
+}
+
+/// Primitives per task.
+const PIECE: usize = 4096;
+
+/// Returns the bytes of the leaves of trees: primitives in the order of their ids.
+fn leaf_bytes<T: Type>(trees: &[(&[u32], &[T])]) -> Vec<u8> {
+    let stride = stride(T::SCHEMA);
+    let mut bytes = vec![0; stride * trees.iter().map(|(ids, _)| ids.len()).sum::<usize>()];
+    let mut rest = &mut bytes[..];
+    for (ids, prims) in trees {
+        let (of_tree, after) = rest.split_at_mut(stride * ids.len());
+        tasks::map_pieces_mut(of_tree, PIECE * stride, |first, piece| {
+            for (out, &id) in piece.chunks_exact_mut(stride).zip(&ids[first / stride..]) {
+                prims[id as usize].write(out);
+            }
+        });
+        rest = after;
+    }
+    bytes
 }
 
 /// Returns the bytes of a buffer of trees, each with the id of its first primitive in the list.
@@ -91,7 +111,13 @@ fn bytes_in<'a>(trees: &[(&'a Compressed, u32)], part: u32) -> Option<Cow<'a, [u
         return Some(Cow::Borrowed(cast_slice(&only.ids)));
     }
     // Nodes and primitives of the trees before.
-    let (mut nodes, mut entries, mut bytes) = (0, 0, Vec::new());
+    let len = |(tree, _): &(&Compressed, u32)| match part {
+        buffers::WIDE_NODES => size_of_val(&tree.nodes[..]),
+        buffers::LEAF_IDS => size_of_val(&tree.ids[..]),
+        _ => size_of::<u32>(),
+    };
+    let mut bytes = Vec::with_capacity(trees.iter().map(len).sum());
+    let (mut nodes, mut entries) = (0, 0);
     for (tree, first) in trees {
         match part {
             buffers::WIDE_NODES => tree.nodes.iter().for_each(|node| {

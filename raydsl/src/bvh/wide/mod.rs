@@ -1,5 +1,8 @@
-//! The wide tree: nodes of eight children over blocks of eight primitives, which are tested eight at
-//! once by a ray, one by a register of rays, or as [pairs], and its traversals by single rays, ray streams and ray packets.
+//! The wide tree: nodes of eight children over blocks of eight primitives, and its traversals by single
+//! rays, ray streams and ray packets.
+//!
+//! A ray tests a block's eight primitives at once, a register of rays tests one after another, and
+//! primitives that are not short are tested as [pairs] of rays and primitives.
 
 mod beam;
 mod binary;

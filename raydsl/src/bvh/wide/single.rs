@@ -170,6 +170,10 @@ fn traverse<E: Lanes, P: Primitive>(
                 let i = hits.trailing_zeros() as usize;
                 hits &= hits - 1;
                 if wanted == Wanted::Each {
+                    // A hit of this block may have lowered the limit.
+                    if E::f32_lane(&hit.t.0, i) > beam.limit {
+                        continue;
+                    }
                     beam.limit = visit(&intersector.part, ids(block)[i]);
                     if beam.limit == f32::NEG_INFINITY {
                         return beam.limit;

@@ -14,7 +14,7 @@ use text::{Query, linear, traverse};
 use wide::WideNames;
 
 use crate::bvh::contract::{
-    SlabsOn, enter_leave, is_before, is_finite, is_within, limit_behind, slabs,
+    Padding, SlabsOn, enter_leave, is_before, is_finite, is_within, limit_behind, slabs,
 };
 use crate::bvh::wide::COMPRESSED_SCHEMA;
 use crate::bvh::wide::device::WideBuffers;
@@ -47,7 +47,7 @@ impl<P: Primitive> Described for SceneView<'_, P> {
         m.buffer_of(self)
     }
     fn slack(&self) -> f32 {
-        P::SLACK
+        Padding::of::<P>().slack
     }
     fn name(&self) -> Cow<'static, str> {
         Data::name(self)
@@ -205,35 +205,50 @@ impl Recorder {
     fn closest_hit_function<P: Primitive>(&self, prims: &SceneView<'_, P>) -> usize {
         let searched = self.searched(prims, true);
         let call = self.intersect(prims);
-        self.closest_function(prims, &searched, &call)
+        self.closest_function(prims, &searched, &call, false)
     }
 
+    /// Returns the function of the least `(t, id)` hit, which may count tested nodes and primitives.
     fn closest_function(
         &self,
         prims: &dyn Described,
         searched: &Searched,
         call: &(String, String),
+        counts: bool,
     ) -> usize {
-        let (test, lower) = self.closest_text(prims, searched, call);
+        let (mut test, lower) = self.closest_text(prims, searched, call);
         let of = &searched.name;
-        let miss = zero_value(Hit::SCHEMA);
+        let (schema, result, give, ending) = match counts {
+            false => (Hit::SCHEMA, "Hit", "best", ""),
+            true => (CountedHit::SCHEMA, "CountedHit", "CountedHit(best, cost)", "_with_cost"),
+        };
+        let miss = zero_value(schema);
+        let declare = |before: &str| match counts {
+            false => format!("var best = {before};"),
+            true => format!("var best = {before}.hit;\nvar cost = {before}.cost;"),
+        };
+        if counts {
+            test = format!("cost.primitives = cost.primitives + 1u;\n{test}");
+        }
         let query = Query {
-            result: "Hit",
-            declare: &format!("var best = {miss};"),
+            result,
+            declare: &declare(&miss),
             lower: &lower,
             test: &test,
-            give: "best",
+            give,
             slack: prims.slack(),
-            counts: false,
+            counts,
             continues: false,
         };
+        let name = format!("{of}_closest_hit{ending}");
         if !prims.is_list() {
-            return self.query_function(searched, format!("{of}_closest_hit"), &query);
+            return self.query_function(searched, name, &query);
         }
-        // Query the trees in order, each with the best hit so far.
-        let each = Query { declare: "var best = before;", continues: true, ..query };
-        let each = self.tree_function(searched, format!("{of}_closer_hit"), ", before: Hit", &each);
-        self.list_function((prims, searched), format!("{of}_closest_hit"), &query, &|roots| {
+        // Query the trees in order, each with what was found so far.
+        let each = Query { declare: &declare("before"), continues: true, ..query };
+        let each_name = format!("{of}_closer_hit{ending}");
+        let each = self.tree_function(searched, each_name, &format!(", before: {result}"), &each);
+        self.list_function((prims, searched), name, &query, &|roots| {
             format!(
                 "    var best = {miss};\n    \
                  for (var i = 0u; i < params.len_of_{roots}; i = i + 1u) {{\n        \
@@ -244,47 +259,10 @@ impl Recorder {
 
     /// Returns the function of the least `(t, id)` hit that counts tested nodes and primitives.
     fn closest_hit_with_cost_function<P: Primitive>(&self, prims: &SceneView<'_, P>) -> usize {
+        // A wide tree has other nodes: what is counted are those of the binary one.
         let searched = self.searched(prims, false);
         let call = self.intersect(prims);
-        self.closest_with_cost_function(prims, &searched, &call)
-    }
-
-    fn closest_with_cost_function(
-        &self,
-        prims: &dyn Described,
-        searched: &Searched,
-        call: &(String, String),
-    ) -> usize {
-        let (test, lower) = self.closest_text(prims, searched, call);
-        let of = &searched.name;
-        let test = format!("cost.primitives = cost.primitives + 1u;\n{test}");
-        let before = zero_value(CountedHit::SCHEMA);
-        let declare = |before: &str| format!("var best = {before}.hit;\nvar cost = {before}.cost;");
-        let query = Query {
-            result: "CountedHit",
-            declare: &declare(&before),
-            lower: &lower,
-            test: &test,
-            give: "CountedHit(best, cost)",
-            slack: prims.slack(),
-            counts: true,
-            continues: false,
-        };
-        let name = format!("{of}_closest_hit_with_cost");
-        if !prims.is_list() {
-            return self.query_function(searched, name, &query);
-        }
-        // Query the trees in order, each with the best hit and the cost so far.
-        let each = Query { declare: &declare("before"), continues: true, ..query };
-        let each_name = format!("{of}_closer_hit_with_cost");
-        let each = self.tree_function(searched, each_name, ", before: CountedHit", &each);
-        self.list_function((prims, searched), name, &query, &|roots| {
-            format!(
-                "    var best = {before};\n    \
-                 for (var i = 0u; i < params.len_of_{roots}; i = i + 1u) {{\n        \
-                 best = {each}(ray, {roots}_at(i), best);\n    }}\n    return best;\n"
-            )
-        })
+        self.closest_function(prims, &searched, &call, true)
     }
 
     fn any_hit_function<P: Primitive>(&self, prims: &SceneView<'_, P>) -> usize {

@@ -7,7 +7,7 @@ use crate::bvh::wide::device::WideBuffer;
 use crate::machine::record::from_template;
 use crate::machine::{Machine, Recorder, U};
 
-/// Names of the buffers of wide trees, and of the functions that its traversals call.
+/// Names of the buffers of wide trees, and of the functions that their traversals call.
 pub(super) struct WideNames {
     pub(super) nodes: String,
     pub(super) leaves: String,
@@ -52,7 +52,8 @@ impl WideNames {
         first: &str,
         query: &Query<'_>,
     ) -> String {
-        let Query { declare, lower, test, give, result, slack, .. } = query;
+        let Query { declare, lower, test, give, result, slack, counts, .. } = query;
+        debug_assert!(!counts, "only the traversal of binary trees counts its work");
         from_template(
             include_str!("wide.wgsl"),
             &[

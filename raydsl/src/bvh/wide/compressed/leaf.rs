@@ -26,8 +26,7 @@ impl Leaf {
     }
 }
 
-/// A leaf cut in two, and how many primitives fewer a ray is expected to test, relative to the area of
-/// boxes.
+/// A leaf cut in two, and by how much that lessens the sum of area times count.
 #[derive(Clone, Copy)]
 struct Cut {
     halves: [ChildBox; 2],
@@ -49,6 +48,9 @@ pub(super) fn split(children: &mut Vec<ChildBox>, bounds: Bounds<'_>) {
         let Some((at, Cut { halves, .. })) = best.and_then(|k| Some((k, cuts[k]?))) else { return };
         children[at] = halves[0];
         children.push(halves[1]);
+        if children.len() == WIDTH {
+            return;
+        }
         cuts[at] = cut(&halves[0], bounds);
         cuts[children.len() - 1] = cut(&halves[1], bounds);
     }

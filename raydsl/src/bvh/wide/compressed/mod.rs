@@ -51,7 +51,7 @@ const _: () = assert!(size_of::<CompressedNode>() == 80);
 
 /// The schema of a [`CompressedNode`].
 pub(crate) const COMPRESSED_SCHEMA: &Schema = &Schema::Struct {
-    name: "WideNode",
+    name: "CompressedNode",
     fields: &[
         Field { name: "corner", offset: 0, schema: &Schema::Vector(&Schema::F32, 3) },
         Field { name: "exponents", offset: 12, schema: &Schema::U32 },
@@ -106,10 +106,11 @@ impl Compressed {
             nodes: vec![Zeroable::zeroed(); planned.len()],
             ids: Vec::with_capacity(tree.entries()),
         };
-        let number = |n: usize| u32::try_from(n).expect("a wide tree has at most 2^29 blocks");
-        let (mut next, mut pending) = (1, vec![(0, 0)]);
+        let number = |n: usize| u32::try_from(n).expect("a tree has fewer entries than 2^32");
+        let (mut next, mut pending) = (1, Vec::new());
+        pending.extend((!planned.is_empty()).then_some((0, 0)));
         while let Some((from, place)) = pending.pop() {
-            let Some(Planned { node, below, ids }) = planned.get(from) else { break };
+            let Planned { node, below, ids } = &planned[from];
             let (first_node, first_leaf) = (number(next), number(made.ids.len()));
             made.nodes[place] = CompressedNode { first_node, first_leaf, ..*node };
             made.ids.extend_from_slice(ids);
@@ -211,15 +212,15 @@ impl Grid {
         let union = |[low, high]: [f32; 2], span: &[f32; 2]| [low.min(span[0]), high.max(span[1])];
         let [low, high] = spans.fold([f32::INFINITY, f32::NEG_INFINITY], union);
         let largest = low.abs().max(high.abs());
-        // From the last bit of the largest coordinate on; cells are no smaller than normal numbers.
+        // The finest candidate is the greatest of the largest coordinate's last bit, the power of two
+        // up to a 256th of the extent, and the least normal number.
         let last_bit = (largest.to_bits() >> 23).saturating_sub(23);
-        let extent = (high / 256.0 - low / 256.0).to_bits() >> 23;
+        let extent = (high / 256.0 - low / 256.0).abs().to_bits() >> 23;
         let finest = last_bit.max(extent).max(1);
         for exponent in finest..255 {
             let cell = f64::from(f32::from_bits(exponent << 23));
             // Multiples of the cell below the greatest float are floats.
-            let corner = (f64::from(low) / cell).floor() * cell;
-            let corner = corner.max(f64::from(f32::MIN)) as f32;
+            let corner = ((f64::from(low) / cell).floor() * cell) as f32;
             let grid = Self { corner, exponent };
             if grid.plane(LAST_PLANE) >= f64::from(high) {
                 return grid;

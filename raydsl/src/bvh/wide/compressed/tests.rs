@@ -4,8 +4,9 @@ use glam::Vec3;
 
 use super::{Compressed, CompressedNode, Grid};
 use crate::bvh::wide::node::{Child, WIDTH};
-use crate::bvh::{BuildConfig, BuildQuality, Bvh, RecordQuery, nearest_counted};
+use crate::bvh::{BuildConfig, BuildQuality, Bvh, BvhList, RecordQuery, buffers, nearest_counted};
 use crate::geometry::{Aabb, Ray, Triangle};
+use crate::machine::bytes_of;
 
 /// Returns a pseudo-random number from 0 to 1.
 fn random(i: u32, k: u32) -> f32 {
@@ -49,13 +50,13 @@ fn places() -> [(Vec3, f32); 8] {
     ]
 }
 
-/// Counts the primitives below a node, all of them within the boxes on the way; returns the number
-/// of levels.
+/// Counts the primitives below a node, all of them within the boxes on the way, or in part where they
+/// were split; returns the number of levels.
 fn descend(
     tree: &Compressed,
     at: usize,
     within: Aabb,
-    prims: &[Triangle],
+    (prims, is_split): (&[Triangle], bool),
     seen: &mut [u32],
 ) -> usize {
     let node = &tree.nodes[at];
@@ -69,12 +70,15 @@ fn descend(
         let within = within.intersection(Aabb::new(low, high));
         if is_node {
             assert_eq!(count, 0, "a slot has a node or a leaf");
-            levels = levels.max(descend(tree, next, within, prims, seen));
+            levels = levels.max(descend(tree, next, within, (prims, is_split), seen));
             next += 1;
         }
         for &id in &tree.ids[first..first + count] {
             let bounds = prims[id as usize].get_bounds();
-            assert_eq!(within.union(bounds), within, "{bounds:?}");
+            match is_split {
+                false => assert_eq!(within.union(bounds), within, "{bounds:?}"),
+                true => assert!(within.intersection(bounds).is_valid(), "{bounds:?}"),
+            }
             seen[id as usize] += 1;
         }
     }
@@ -87,7 +91,8 @@ fn boxes_hold_their_primitives() {
     for (middle, size) in places() {
         for count in [0, 1, 8, 9, 64, 1000] {
             let prims = triangles(count, middle, size);
-            for quality in [BuildQuality::Fast, BuildQuality::Balanced] {
+            for quality in BuildQuality::ALL {
+                let is_split = quality == BuildQuality::Best;
                 let bvh = wide_tree(&prims, quality);
                 let wide = bvh.tree.own.structure.wide().expect("a wide tree");
                 if !wide.is_for_devices() {
@@ -97,14 +102,41 @@ fn boxes_hold_their_primitives() {
                 let tree = wide.compressed(&prims, &[]);
                 let mut seen = vec![0; prims.len()];
                 if count > 0 {
-                    let levels = descend(tree, 0, everything, &prims, &mut seen);
+                    let levels = descend(tree, 0, everything, (&prims, is_split), &mut seen);
                     assert_eq!(levels, wide.levels());
                 }
-                assert!(seen.iter().all(|&n| n == 1), "{count} {middle} {size}");
+                let is_right = |&n: &u32| if is_split { n >= 1 } else { n == 1 };
+                assert!(seen.iter().all(is_right), "{count} {middle} {size}");
                 assert_eq!((tree.nodes.len(), tree.ids.len()), (wide.len(), wide.entries()));
             }
         }
     }
+}
+
+/// Reads the buffers of a list of trees, one of them empty, as a device does.
+#[test]
+fn buffers_of_a_list_hold_its_trees() {
+    let prims = triangles(100, Vec3::ONE, 5.0);
+    let parts = [&prims[..0], &prims[..1], &prims[1..10], &prims[10..]];
+    let trees = parts.map(|prims| wide_tree(prims, BuildQuality::Balanced));
+    let list = BvhList::new(&trees).expect("few primitives, none shared");
+    let view = list.view();
+    let bytes = |part| view.wide_bytes(part).expect("all trees are wide");
+    let words = |part| bytemuck::pod_collect_to_vec::<u8, u32>(&bytes(part));
+    let (ids, roots) = (words(buffers::LEAF_IDS), words(buffers::WIDE_ROOTS));
+    let nodes: Vec<CompressedNode> = bytemuck::pod_collect_to_vec(&bytes(buffers::WIDE_NODES));
+    assert_eq!(roots.len(), 3, "a root for each tree that has a primitive");
+    let (leaves, size) = (bytes(buffers::LEAVES), size_of::<Triangle>());
+    assert_eq!(leaves.len(), ids.len() * size);
+    for (leaf, &id) in leaves.chunks_exact(size).zip(&ids) {
+        assert_eq!(leaf, bytes_of(&prims[id as usize..][..1]));
+    }
+    let tree = Compressed { nodes, ids };
+    let (mut seen, everything) = (vec![0; prims.len()], Aabb::new(Vec3::MIN, Vec3::MAX));
+    for root in roots {
+        descend(&tree, root as usize, everything, (&prims, false), &mut seen);
+    }
+    assert!(seen.iter().all(|&n| n == 1));
 }
 
 #[test]

@@ -2,9 +2,9 @@
 
 use glam::Vec3;
 
-use super::{CompressedNode, cell_sizes};
+use super::{CompressedNode, LAST_PLANE, cell_sizes};
 use crate::bvh::contract::{
-    Slabs, enter_leave, is_before, is_finite, is_within, limit_behind, slabs,
+    Padding, Slabs, enter_leave, is_before, is_finite, is_within, limit_behind, slabs,
 };
 use crate::bvh::{Bvh, Cost};
 use crate::geometry::{Hit, HitRecord, Primitive, Ray};
@@ -25,10 +25,10 @@ impl CompressedNode {
         [self.first_leaf as usize + (0..slot).map(count).sum::<usize>(), count(slot)]
     }
 
-    /// Returns the slots in the order in which a ray is likely to enter them.
-    fn order(ray: &Ray) -> impl Iterator<Item = usize> + use<> {
-        let octant = ray.direction.cmplt(Vec3::ZERO).bitmask() as usize;
-        (0..8).map(move |i| i ^ octant)
+    /// Returns the slots in the order in which a ray is likely to enter them, whose direction is
+    /// negative along the axes `octant`.
+    fn order(octant: u32) -> impl Iterator<Item = usize> {
+        (0..8).map(move |i| (i ^ octant) as usize)
     }
 
     /// Returns the slots whose boxes a ray enters up to `limit`.
@@ -44,7 +44,8 @@ impl CompressedNode {
 
 impl<P: Primitive> Bvh<'_, P> {
     /// Finds the least `(t, id)` hit of a ray, or any, as a device does in a wide tree; returns the
-    /// nodes that it reads, each with eight boxes, and the primitives. None if the tree is not wide.
+    /// nodes that it reads, each with eight boxes, and the primitives. `None` if a device does not read a wide tree: it was
+    /// not built, was refitted, or has coordinates that are too large.
     #[doc(hidden)]
     pub fn hit_on_device(&self, ray: Ray, is_any: bool) -> Option<(Hit, Cost)> {
         let wide = self.tree.own.structure.wide().filter(|wide| wide.is_for_devices())?;
@@ -55,15 +56,15 @@ impl<P: Primitive> Bvh<'_, P> {
         }
         let root = &tree.nodes[0];
         let corner = Vec3::from(root.corner);
-        let end = corner + 255.0 * cell_sizes(root.exponents);
-        let s = slabs(false, ray, corner, end, P::SLACK, 0.0);
+        let end = corner + LAST_PLANE as f32 * cell_sizes(root.exponents);
+        let s = slabs(false, ray, corner, end, Padding::of::<P>().slack, 0.0);
         let (mut at, mut stack) = (0, Vec::new());
         let octant = ray.direction.cmplt(Vec3::ZERO).bitmask();
         loop {
             cost.nodes += 1;
             let node = &tree.nodes[at];
             let entered = node.entered(s, &ray, limit);
-            for slot in CompressedNode::order(&ray).filter(|slot| entered >> slot & 1 == 1) {
+            for slot in CompressedNode::order(octant).filter(|slot| entered >> slot & 1 == 1) {
                 let [first, count] = node.leaf(slot);
                 for &id in &tree.ids[first..first + count] {
                     cost.primitives += 1;
@@ -81,15 +82,12 @@ impl<P: Primitive> Bvh<'_, P> {
             // The children that are left of a node: the first of them all, the slots that the ray
             // enters, in its order, and all slots of nodes.
             let inner = (0..8).filter(|i| (node.slots & entered) >> (i ^ octant) & 1 == 1);
-            let mut group =
-                (node.first_node, inner.fold(0, |all, i| all | 1 << i), node.slots & 255);
-            if group.1 == 0 {
-                match stack.pop() {
-                    Some(before) => group = before,
-                    None => return Some((best, cost)),
-                }
-            }
-            let (first, mut left, slots): (u32, u32, u32) = group;
+            let left = inner.fold(0u32, |all, i| all | 1 << i);
+            let group = match left {
+                0 => stack.pop(),
+                left => Some((node.first_node, left, node.slots & 255)),
+            };
+            let Some((first, mut left, slots)) = group else { return Some((best, cost)) };
             let slot = left.trailing_zeros() ^ octant;
             left &= left - 1;
             if left != 0 {
