@@ -189,8 +189,8 @@ impl Explanation {
 /// Explains the results of a variant of your own: compares `outputs`, its results for `inputs`,
 /// with those of the kernel's scalar variant.
 ///
-/// The kernel runs in `f64` with a bound on the rounding error; see the chapter "What the numbers
-/// promise" of the book. That takes some two hundred times as long as a run, for every differing
+/// The kernel runs in `f64` with a bound on the rounding error; see the chapter "Numerical
+/// guarantees" of the book. That takes some two hundred times as long as a run, for every differing
 /// result and for a sample of 4096 inputs; a differing one whose decisions are open up to 64 times
 /// as long again.
 ///

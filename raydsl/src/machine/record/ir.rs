@@ -26,8 +26,8 @@
 //!
 //! **Arithmetic** is that of the scalar source, operation by operation: floats follow IEEE 754
 //! where the device does; `wrapping_` operations of integers wrap, and so do those that would
-//! panic; a quotient by 0 and shifts beyond the width are defined as in the book, "What the numbers
-//! promise"; conversions saturate. `min` and `max` are `if b < a { b } else { a }` and its like,
+//! panic; a quotient by 0 and shifts beyond the width are defined as in the book, "Numerical
+//! guarantees"; conversions saturate. `min` and `max` are `if b < a { b } else { a }` and its like,
 //! also for a NaN, unless the function is without any (`KnownFunction::is_without_nan`). Operations
 //! on numbers alone are folded while recording.
 //!
