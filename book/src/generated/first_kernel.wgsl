@@ -1,3 +1,10 @@
+struct Ray {
+    origin: vec3<f32>,
+    direction: vec3<f32>,
+    t_min: f32,
+    t_max: f32,
+}
+
 struct Hit {
     is_hit: bool,
     t: f32,
@@ -7,23 +14,16 @@ struct Hit {
     v: f32,
 }
 
-struct Ray {
-    origin: vec3<f32>,
-    direction: vec3<f32>,
-    t_min: f32,
-    t_max: f32,
+struct Slabs {
+    lower: vec3<f32>,
+    upper: vec3<f32>,
+    inverse: vec3<f32>,
 }
 
 struct ColorSphere {
     center: vec3<f32>,
     radius: u32,
     color: array<u32, 3>,
-}
-
-struct Slabs {
-    lower: vec3<f32>,
-    upper: vec3<f32>,
-    inverse: vec3<f32>,
 }
 
 struct Node {
@@ -113,29 +113,6 @@ fn bvh_ids_at(i: u32) -> u32 {
     return bvh_ids[i];
 }
 
-fn Hit_new(is_hit: bool, t: f32) -> Hit {
-    return Hit(is_hit, t, 0u, 0u, 0.0f, 0.0f);
-}
-
-fn intersect(ray: Ray, center: vec3<f32>, radius: f32) -> Hit {
-    let f = center - ray.origin;
-    let per_d2 = 1.0f / (ray.direction.x * ray.direction.x + ray.direction.y * ray.direction.y + ray.direction.z * ray.direction.z);
-    let closest = (f.x * ray.direction.x + f.y * ray.direction.y + f.z * ray.direction.z) * per_d2;
-    let aside = f - ray.direction * closest;
-    let distance = sqrt(aside.x * aside.x + aside.y * aside.y + aside.z * aside.z);
-    let radicand = (radius - distance) * (radius + distance);
-    let half = sqrt(radicand * per_d2);
-    let near = closest - half;
-    let far = closest + half;
-    let t = select(near, far, (near < ray.t_min));
-    let is_hit = radicand >= 0.0f && radius > 0.0f && t >= ray.t_min && t <= ray.t_max;
-    return Hit_new(is_hit, t);
-}
-
-fn ColorSphere_intersect(self_: ColorSphere, ray: Ray) -> Hit {
-    return intersect(ray, self_.center, f32(self_.radius) / params.lit_255_0);
-}
-
 fn are_finite(v: vec3<f32>) -> bool {
     return (bitcast<u32>(v.x) & 2147483647u) < 2139095040u && (bitcast<u32>(v.y) & 2147483647u) < 2139095040u && (bitcast<u32>(v.z) & 2147483647u) < 2139095040u;
 }
@@ -149,7 +126,7 @@ fn is_within(hit: Hit, ray: Ray) -> bool {
 }
 
 fn precedes(hit: Hit, other: Hit) -> bool {
-    var is_first: bool = hit.prim_id < other.prim_id;
+    let is_first = hit.prim_id < other.prim_id;
     return hit.t < other.t || (hit.t == other.t && is_first);
 }
 
@@ -182,7 +159,7 @@ fn finite_inverse(d: vec3<f32>) -> vec3<f32> {
 
 fn slabs(ray: Ray, low: vec3<f32>, high: vec3<f32>, slack: f32, origin: f32) -> Slabs {
     let reach = max(abs(low - ray.origin), abs(high - ray.origin));
-    var padding: f32 = max(slack * largest(reach), 1.1754944e-38f);
+    let padding = max(slack * largest(reach), 1.1754944e-38f);
     let distant = abs(ray.origin);
     let padding_1 = distant * 1.1920929e-7f + padding;
     return Slabs(ray.origin + padding_1, ray.origin - padding_1, finite_inverse(ray.direction));
@@ -196,6 +173,29 @@ fn enter_leave(s: Slabs, low: vec3<f32>, high: vec3<f32>, t_min: f32, t_max: f32
     let a = (low - s.lower) * s.inverse;
     let b = (high - s.upper) * s.inverse;
     return overlap(min(a, b), max(a, b), t_min, t_max);
+}
+
+fn Hit_new(is_hit: bool, t: f32) -> Hit {
+    return Hit(is_hit, t, 0u, 0u, 0.0f, 0.0f);
+}
+
+fn intersect(ray: Ray, center: vec3<f32>, radius: f32) -> Hit {
+    let f = center - ray.origin;
+    let per_d2 = 1.0f / (ray.direction.x * ray.direction.x + ray.direction.y * ray.direction.y + ray.direction.z * ray.direction.z);
+    let closest = (f.x * ray.direction.x + f.y * ray.direction.y + f.z * ray.direction.z) * per_d2;
+    let aside = f - ray.direction * closest;
+    let distance = sqrt(aside.x * aside.x + aside.y * aside.y + aside.z * aside.z);
+    let radicand = (radius - distance) * (radius + distance);
+    let half = sqrt(radicand * per_d2);
+    let near = closest - half;
+    let far = closest + half;
+    let t = select(near, far, (near < ray.t_min));
+    let is_hit = radicand >= 0.0f && radius > 0.0f && t >= ray.t_min && t <= ray.t_max;
+    return Hit_new(is_hit, t);
+}
+
+fn ColorSphere_intersect(self_: ColorSphere, ray: Ray) -> Hit {
+    return intersect(ray, self_.center, f32(self_.radius) / params.lit_255_0);
 }
 
 fn bvh_closest_hit(ray: Ray) -> Hit {
@@ -266,7 +266,6 @@ fn bvh_any_hit(ray: Ray) -> bool {
         return false;
     }
     var stack: array<u32, 64>;
-    var stack_t: array<f32, 64>;
     var top = 0u;
     var node = bvh_nodes_at(0u);
     let s = slabs(ray, node.min, node.max, 9.536743e-7, 0.0);
@@ -292,7 +291,6 @@ fn bvh_any_hit(ray: Ray) -> bool {
             if (hit_left && hit_right) {
                 let left_first = l.x <= r.x;
                 stack[top] = select(node.first, node.first + 1u, left_first);
-                stack_t[top] = select(l.x, r.x, left_first);
                 top = top + 1u;
                 if (left_first) { node = left; } else { node = right; }
                 continue;
@@ -300,15 +298,10 @@ fn bvh_any_hit(ray: Ray) -> bool {
             if (hit_left) { node = left; continue; }
             if (hit_right) { node = right; continue; }
         }
-        // The next node on the stack that is not beyond the limit.
-        var found = false;
-        while (top > 0u && !found) {
-            top = top - 1u;
-            found = stack_t[top] <= limit;
-        }
-        if (!found) {
+        if (top == 0u) {
             break;
         }
+        top = top - 1u;
         node = bvh_nodes_at(stack[top]);
     }
     return false;
@@ -367,7 +360,7 @@ fn load_input(i: u32) -> Tuple {
     return Tuple(Ray(s.arg0_origin, vec3<f32>(s.arg0_direction_x, s.arg0_direction_y, s.arg0_direction_z), s.arg0_t_min, s.arg0_t_max));
 }
 
-@compute @workgroup_size(8, 8)
+@compute @workgroup_size(64, 1)
 fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     if (any(id.xy >= job.count)) { return; }
     let at = job.first + id.xy;

@@ -47,7 +47,7 @@ fn load_input(i: u32) -> Tuple {
     return Tuple(s.arg0, s.arg1);
 }
 
-@compute @workgroup_size(8, 8)
+@compute @workgroup_size(64, 1)
 fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     if (any(id.xy >= job.count)) { return; }
     let at = job.first + id.xy;
