@@ -77,29 +77,34 @@ impl<'a, T: Type, S> View<'a, T, S> {
             let trees = self.parts().filter_map(|part| Some((of_part(part)?, first(&part))));
             return bytes_in(&trees.collect::<Vec<_>>(), part);
         }
-        let leaves = self.parts().filter_map(|part| Some((&of_part(part)?.ids[..], part.prims)));
-        Some(Cow::Owned(leaf_bytes(&leaves.collect::<Vec<_>>())))
+        let stride = stride(T::SCHEMA);
+        let mut bytes = Vec::new();
+        for (tree, prims) in self.parts().filter_map(|part| Some((of_part(part)?, part.prims))) {
+            let write = |id: u32, out: &mut [u8]| prims[id as usize].write(out);
+            append_leaves(&mut bytes, stride, &tree.ids, &write);
+        }
+        Some(Cow::Owned(bytes))
     }
 }
 
 /// Primitives per task.
 const PIECE: usize = 4096;
 
-/// Returns the bytes of the leaves of trees: primitives in the order of their ids.
-fn leaf_bytes<T: Type>(trees: &[(&[u32], &[T])]) -> Vec<u8> {
-    let stride = stride(T::SCHEMA);
-    let mut bytes = vec![0; stride * trees.iter().map(|(ids, _)| ids.len()).sum::<usize>()];
-    let mut rest = &mut bytes[..];
-    for (ids, prims) in trees {
-        let (of_tree, after) = rest.split_at_mut(stride * ids.len());
-        tasks::map_pieces_mut(of_tree, PIECE * stride, |first, piece| {
-            for (out, &id) in piece.chunks_exact_mut(stride).zip(&ids[first / stride..]) {
-                prims[id as usize].write(out);
-            }
-        });
-        rest = after;
-    }
-    bytes
+/// Appends primitives in the order of their ids; `write` is a trait object, so that the tasks are compiled
+/// once, not for every type of primitive.
+fn append_leaves(
+    bytes: &mut Vec<u8>,
+    stride: usize,
+    ids: &[u32],
+    write: &(dyn Fn(u32, &mut [u8]) + Sync),
+) {
+    let before = bytes.len();
+    bytes.resize(before + stride * ids.len(), 0);
+    tasks::map_pieces_mut(&mut bytes[before..], PIECE * stride, |first, piece| {
+        for (out, &id) in piece.chunks_exact_mut(stride).zip(&ids[first / stride..]) {
+            write(id, out);
+        }
+    });
 }
 
 /// Returns the bytes of a buffer of trees, each with the id of its first primitive in the list.
