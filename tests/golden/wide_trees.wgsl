@@ -214,7 +214,8 @@ fn points_leaves_closer_hit(ray: Ray, first: u32, before: Hit) -> Hit {
     let backward = select(vec3<u32>(0u), vec3<u32>(1u, 2u, 4u), ray.direction < vec3<f32>(0.0));
     let octant = backward.x | backward.y | backward.z;
     loop {
-        // In bits, the children that the ray enters: nodes, and above them leaves.
+        // In bits, the children that the ray enters, in its order (`slot ^ octant`): nodes, and above
+        // them leaves.
         var found = 0u;
         let cells = cell_sizes(node.exponents);
         for (var slot = 0u; slot < 8u; slot = slot + 1u) {
@@ -224,7 +225,7 @@ fn points_leaves_closer_hit(ray: Ray, first: u32, before: Hit) -> Hit {
             let y = select(node.y.xz, node.y.yw, is_second);
             let z = select(node.z.xz, node.z.yw, is_second);
             let shift = vec3<u32>(8u * (slot & 3u));
-            // Processors convert signed integers faster.
+            // CPUs, as of lavapipe, convert signed integers faster.
             let lower = vec3<i32>((vec3<u32>(x.x, y.x, z.x) >> shift) & vec3<u32>(255u));
             let upper = vec3<i32>((vec3<u32>(x.y, y.y, z.y) >> shift) & vec3<u32>(255u));
             let low = node.corner + vec3<f32>(lower) * cells;
@@ -304,7 +305,8 @@ fn points_leaves_any_hit_in(ray: Ray, first: u32) -> bool {
     let backward = select(vec3<u32>(0u), vec3<u32>(1u, 2u, 4u), ray.direction < vec3<f32>(0.0));
     let octant = backward.x | backward.y | backward.z;
     loop {
-        // In bits, the children that the ray enters: nodes, and above them leaves.
+        // In bits, the children that the ray enters, in its order (`slot ^ octant`): nodes, and above
+        // them leaves.
         var found = 0u;
         let cells = cell_sizes(node.exponents);
         for (var slot = 0u; slot < 8u; slot = slot + 1u) {
@@ -314,7 +316,7 @@ fn points_leaves_any_hit_in(ray: Ray, first: u32) -> bool {
             let y = select(node.y.xz, node.y.yw, is_second);
             let z = select(node.z.xz, node.z.yw, is_second);
             let shift = vec3<u32>(8u * (slot & 3u));
-            // Processors convert signed integers faster.
+            // CPUs, as of lavapipe, convert signed integers faster.
             let lower = vec3<i32>((vec3<u32>(x.x, y.x, z.x) >> shift) & vec3<u32>(255u));
             let upper = vec3<i32>((vec3<u32>(x.y, y.y, z.y) >> shift) & vec3<u32>(255u));
             let low = node.corner + vec3<f32>(lower) * cells;
