@@ -19,7 +19,7 @@ pub(crate) const FEATURES: &[Feature] = &[
     feature("disk", &["geometry/disk.rs", "Near"]),
     feature("triangle", &["geometry/triangle.rs", "math/exact.rs"]),
     feature("tree", &["Slabs", "*_nodes", "*_ids"]),
-    feature("wide tree", &["bvh/wide/compressed/mod.rs", "WideNode", "*_leaves"]),
+    feature("wide tree", &["bvh/wide/compressed/mod.rs", "CompressedNode", "*_leaves"]),
     feature("instances", &["bvh/on/wgsl/instances.rs", "Place", "*_places", "TraversalLevel"]),
     feature("closest hit", &["*_closest_hit"]),
     feature("any hit", &["*_any_hit"]),
