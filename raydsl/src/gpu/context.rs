@@ -67,7 +67,8 @@ impl Context {
     /// Its callbacks for errors and for device loss are left alone. Request
     /// `Features::TIMESTAMP_QUERY` when creating the device to get device times,
     /// `Features::PASSTHROUGH_SHADERS`, with `experimental_features` enabled, to get [exact
-    /// results](Self::is_exact) on Vulkan, and the adapter's storage limits to get large windows. Without `adapter_info` the device's own is used.
+    /// results](Self::is_exact) on Vulkan, and the adapter's storage limits to get large windows.
+    /// Without `adapter_info` the device's own is used.
     pub fn from_wgpu(
         adapter_info: Option<wgpu::AdapterInfo>,
         device: wgpu::Device,
