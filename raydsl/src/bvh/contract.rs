@@ -176,7 +176,7 @@ impl SiblingSlabs {
             let b = (Vec4::from_array(high) - self.upper) * self.inverse;
             (a.min(b), a.max(b))
         };
-        let [(a, a_far), (b, b_far)] = pair.map(slabs);
+        let ((a, a_far), (b, b_far)) = (slabs(pair[0]), slabs(pair[1]));
         // The boxes side by side, two axes at a time; the range of the ray is the fourth axis.
         let near = Vec4::new(a.x, b.x, a.y, b.y).max(Vec4::new(a.z, b.z, t_min, t_min));
         let far = Vec4::new(a_far.x, b_far.x, a_far.y, b_far.y);

@@ -7,7 +7,6 @@ use glam::Affine3;
 use super::contract::Padding;
 use super::instances::Placed;
 use super::structure::Structure;
-use super::wide::device::WideBuffers;
 use super::wide::{Wide, WideQueries};
 use super::{Accelerator, Node, Owned, list};
 use crate::geometry::{Kinds, Primitive, Ray};
@@ -402,15 +401,23 @@ impl<'a, T, S> View<'a, T, S> {
 
     /// Returns the number of nodes and of indices.
     pub(crate) fn tree_len(&self) -> (u64, u64) {
-        let groups = self.placed().map_or((0, 0), Placed::group_len);
-        let lengths = self.parts().filter_map(|part| part.binary_len());
-        lengths.fold(groups, |(n, i), [nodes, ids]| (n + nodes as u64, i + ids as u64))
+        let (mut nodes, mut ids) = self.placed().map_or((0, 0), Placed::group_len);
+        for part in self.parts() {
+            let [of_part, ids_of_part] = part.binary_len().unwrap_or_default();
+            nodes += of_part as u64;
+            ids += ids_of_part as u64;
+        }
+        (nodes, ids)
     }
 
     /// Returns the number of trees with a root.
     pub(crate) fn root_len(&self) -> u64 {
-        let has_nodes = |part: &Part<'a, T, S>| part.binary_len().is_some_and(|len| len[0] > 0);
-        self.parts().filter(has_nodes).count() as u64
+        let mut roots = 0;
+        for part in self.parts() {
+            let [nodes, _] = part.binary_len().unwrap_or_default();
+            roots += u64::from(nodes > 0);
+        }
+        roots
     }
 }
 
@@ -531,10 +538,9 @@ impl<T: Type, S: Type> Resource for View<'_, T, S> {
                     let roots = self.root_len();
                     out.buffer(key(buffers::ROOTS), &format!("{name}_roots"), &Schema::U32, roots);
                 }
-                let wide = self.wide_buffers();
-                out.fact(wide.as_ref().map_or(0, |wide| wide.stack as u64));
-                for buffer in wide.iter().flat_map(WideBuffers::all) {
-                    out.buffer(key(buffer.part), &buffer.name, buffer.schema, buffer.len);
+                match self.wide_buffers() {
+                    Some(wide) => wide.describe(out, &key),
+                    None => out.fact(0),
                 }
             }
             // Their text depends on how deep they are nested, among others.

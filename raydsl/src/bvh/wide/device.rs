@@ -4,10 +4,12 @@ use std::borrow::Cow;
 
 use bytemuck::cast_slice;
 
+use super::Wide;
 use super::compressed::{COMPRESSED_SCHEMA, Compressed, CompressedNode};
 use crate::bvh::build::tasks;
-use crate::bvh::{Part, View, buffers};
-use crate::machine::{Data, Schema, Type, stride};
+use crate::bvh::{View, buffers};
+use crate::machine::wgsl::BufferKey;
+use crate::machine::{Data, Description, Schema, Type, stride};
 
 /// The buffers of wide trees as devices read them.
 pub(crate) struct WideBuffers {
@@ -32,79 +34,101 @@ pub(crate) struct WideBuffer {
 }
 
 impl WideBuffers {
-    pub(crate) fn all(&self) -> impl Iterator<Item = &WideBuffer> {
-        [&self.nodes, &self.leaves, &self.ids].into_iter().chain(&self.roots)
+    /// Describes them; `key` returns the key of one by its part.
+    pub(crate) fn describe(&self, out: &mut Description, key: &dyn Fn(u32) -> BufferKey) {
+        out.fact(self.stack as u64);
+        for buffer in [&self.nodes, &self.leaves, &self.ids].into_iter().chain(&self.roots) {
+            out.buffer(key(buffer.part), &buffer.name, buffer.schema, buffer.len);
+        }
     }
 }
 
+// What depends on the primitive is compiled in the user's crate, for each type: it gathers the trees, and
+// functions that do not depend on it do the rest.
 impl<'a, T: Type, S> View<'a, T, S> {
     /// Returns the buffers of wide trees as devices read them, if all trees are wide.
     pub(crate) fn wide_buffers(&self) -> Option<WideBuffers> {
         self.queries()?;
-        let (mut nodes, mut entries, mut levels) = (0, 0, 0);
-        for wide in self.parts().filter_map(|part| part.wide()) {
-            if !wide.is_for_devices() {
-                return None;
+        let mut trees = Vec::new();
+        for part in self.parts() {
+            if let Some(wide) = part.wide() {
+                trees.push(wide);
             }
-            nodes += wide.len() as u64;
-            entries += wide.entries() as u64;
-            levels = levels.max(wide.levels());
         }
-        let name = Data::name(self);
-        let buffer = |part, suffix, schema, len| WideBuffer {
-            part,
-            name: format!("{name}_{suffix}"),
-            schema,
-            len,
-        };
-        let roots = || buffer(buffers::WIDE_ROOTS, "wide_roots", &Schema::U32, self.root_len());
-        Some(WideBuffers {
-            stack: levels.saturating_sub(1).next_multiple_of(8).max(8),
-            nodes: buffer(buffers::WIDE_NODES, "wide_nodes", COMPRESSED_SCHEMA, nodes),
-            leaves: buffer(buffers::LEAVES, "leaves", T::SCHEMA, entries),
-            ids: buffer(buffers::LEAF_IDS, "leaf_ids", &Schema::U32, entries),
-            roots: self.is_list().then(roots),
-        })
+        let roots = self.is_list().then(|| self.root_len());
+        buffers_of(&trees, &Data::name(self), T::SCHEMA, roots)
     }
 
     /// Returns the bytes of a buffer of wide trees, if all trees are wide; none of another buffer.
     pub(crate) fn wide_bytes(&self, part: u32) -> Option<Cow<'a, [u8]>> {
         let compressed = self.queries()?.compressed;
-        let of_part =
-            |part: Part<'a, T, S>| Some(compressed(part.wide()?, part.prims, part.shared));
+        let (mut trees, mut prims) = (Vec::new(), Vec::new());
+        for part in self.parts() {
+            if let Some(wide) = part.wide() {
+                trees.push((compressed(wide, part.prims, part.shared), part.first));
+                prims.push(part.prims);
+            }
+        }
         if part != buffers::LEAVES {
-            let first = |part: &Part<'a, T, S>| part.first;
-            let trees = self.parts().filter_map(|part| Some((of_part(part)?, first(&part))));
-            return bytes_in(&trees.collect::<Vec<_>>(), part);
+            return bytes_in(&trees, part);
         }
-        let stride = stride(T::SCHEMA);
-        let mut bytes = Vec::new();
-        for (tree, prims) in self.parts().filter_map(|part| Some((of_part(part)?, part.prims))) {
-            let write = |id: u32, out: &mut [u8]| prims[id as usize].write(out);
-            append_leaves(&mut bytes, stride, &tree.ids, &write);
-        }
-        Some(Cow::Owned(bytes))
+        let write = |tree: usize, id: u32, out: &mut [u8]| prims[tree][id as usize].write(out);
+        Some(Cow::Owned(leaves_in(&trees, stride(T::SCHEMA), &write)))
     }
+}
+
+/// Returns the buffers of trees over `name`, whose elements have a schema; `roots` are those of a list.
+fn buffers_of(
+    trees: &[&Wide],
+    name: &str,
+    schema: &'static Schema,
+    roots: Option<u64>,
+) -> Option<WideBuffers> {
+    if !trees.iter().all(|wide| wide.is_for_devices()) {
+        return None;
+    }
+    let nodes = trees.iter().map(|wide| wide.len() as u64).sum();
+    let entries = trees.iter().map(|wide| wide.entries() as u64).sum();
+    let levels = trees.iter().map(|wide| wide.levels()).max().unwrap_or(0);
+    let buffer = |part, suffix, schema, len| WideBuffer {
+        part,
+        name: format!("{name}_{suffix}"),
+        schema,
+        len,
+    };
+    Some(WideBuffers {
+        stack: levels.saturating_sub(1).next_multiple_of(8).max(8),
+        nodes: buffer(buffers::WIDE_NODES, "wide_nodes", COMPRESSED_SCHEMA, nodes),
+        leaves: buffer(buffers::LEAVES, "leaves", schema, entries),
+        ids: buffer(buffers::LEAF_IDS, "leaf_ids", &Schema::U32, entries),
+        roots: roots.map(|len| buffer(buffers::WIDE_ROOTS, "wide_roots", &Schema::U32, len)),
+    })
 }
 
 /// Primitives per task.
 const PIECE: usize = 4096;
 
-/// Appends primitives in the order of their ids; `write` is a trait object, so that the tasks are compiled
-/// once, not for every type of primitive.
-fn append_leaves(
-    bytes: &mut Vec<u8>,
+/// Returns the primitives in leaves, tree by tree; `write` is given the number of the tree, the id of the
+/// primitive in it, and its place.
+fn leaves_in(
+    trees: &[(&Compressed, u32)],
     stride: usize,
-    ids: &[u32],
-    write: &(dyn Fn(u32, &mut [u8]) + Sync),
-) {
-    let before = bytes.len();
-    bytes.resize(before + stride * ids.len(), 0);
-    tasks::map_pieces_mut(&mut bytes[before..], PIECE * stride, |first, piece| {
-        for (out, &id) in piece.chunks_exact_mut(stride).zip(&ids[first / stride..]) {
-            write(id, out);
-        }
-    });
+    write: &(dyn Fn(usize, u32, &mut [u8]) + Sync),
+) -> Vec<u8> {
+    let entries: usize = trees.iter().map(|(tree, _)| tree.ids.len()).sum();
+    // Zeros come from the system page by page, to the threads that write there.
+    let mut bytes = vec![0; stride * entries];
+    let mut rest = &mut bytes[..];
+    for (i, (tree, _)) in trees.iter().enumerate() {
+        let (leaves, after) = rest.split_at_mut(stride * tree.ids.len());
+        tasks::map_pieces_mut(leaves, PIECE * stride, |first, piece| {
+            for (out, &id) in piece.chunks_exact_mut(stride).zip(&tree.ids[first / stride..]) {
+                write(i, id, out);
+            }
+        });
+        rest = after;
+    }
+    bytes
 }
 
 /// Returns the bytes of a buffer of trees, each with the id of its first primitive in the list.
