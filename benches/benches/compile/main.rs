@@ -17,7 +17,7 @@ mod rows;
 mod rustc;
 
 use std::path::PathBuf;
-use std::process::ExitCode;
+use std::process::{Command, ExitCode};
 
 use clap::Parser;
 
@@ -39,6 +39,10 @@ struct Args {
     /// The workspace of the library, if it is not the one that this program belongs to.
     #[arg(long, default_value = concat!(env!("CARGO_MANIFEST_DIR"), "/.."))]
     library: PathBuf,
+    /// Counts rustc's instructions in place of seconds, by valgrind, in some 25 times the time: they
+    /// are the same to a thousandth on a busy machine. The linker's are not counted.
+    #[arg(long)]
+    instructions: bool,
     /// Only `cargo check`, of every case: whether all of it compiles.
     #[arg(long)]
     quick: bool,
@@ -69,6 +73,12 @@ fn main() -> ExitCode {
         cases.iter().for_each(|case| println!("{}", case.name));
         return ExitCode::SUCCESS;
     }
+    if args.instructions
+        && let Err(error) = Command::new(rustc::VALGRIND).arg("--version").output()
+    {
+        eprintln!("error: --instructions needs {}, and it does not run: {error}", rustc::VALGRIND);
+        return ExitCode::FAILURE;
+    }
     if !rustc::HAS_CPU_TIME {
         eprintln!(
             "THIS SYSTEM DOES NOT SAY HOW LONG THE PROCESSORS WERE BUSY: only the time of day"
@@ -86,7 +96,7 @@ fn main() -> ExitCode {
 
 /// Measures the cases, and writes the rows, also those before an error.
 fn measure(args: &Args, cases: &[Case]) -> Result<(), String> {
-    let mut rows = Rows::new(&args.library, args.runs.into(), args.keep)?;
+    let mut rows = Rows::new(&args.library, args.runs.into(), args.keep, args.instructions)?;
     let mut errors: u32 = 0;
     for case in cases {
         if let Err(error) = if args.quick { rows.check(case) } else { rows.measure(case) } {

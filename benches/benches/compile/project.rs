@@ -66,6 +66,8 @@ pub(crate) struct Order<'a> {
 pub(crate) struct Project {
     folder: PathBuf,
     is_kept: bool,
+    /// Whether rustc's instructions are counted, of the programs.
+    counts: bool,
     /// Those whose dependencies are there.
     ready: Vec<Profile>,
 }
@@ -73,14 +75,14 @@ pub(crate) struct Project {
 impl Project {
     /// A package that depends on the `raydsl` in the workspace `library`, and on the same versions
     /// of all else.
-    pub(crate) fn new(library: &Path, is_kept: bool) -> Result<Self, String> {
+    pub(crate) fn new(library: &Path, is_kept: bool, counts: bool) -> Result<Self, String> {
         let at = |path: &Path, error: io::Error| format!("{}: {error}", path.display());
         let package = library.join("raydsl");
         let package = package.canonicalize().map_err(|error| at(&package, error))?;
         let folder = env::temp_dir().join(format!("raydsl-compile-{}", std::process::id()));
         // Fails if it is there: it would be somebody else's.
         fs::create_dir(&folder).map_err(|error| at(&folder, error))?;
-        let project = Self { folder, is_kept, ready: Vec::new() };
+        let project = Self { folder, is_kept, counts, ready: Vec::new() };
         let folder = &project.folder;
         let programs = folder.join("src/bin");
         fs::create_dir_all(&programs).map_err(|error| at(&programs, error))?;
@@ -111,8 +113,10 @@ impl Project {
         let sum = |sum: Times, t: &Times| Times {
             cpu: sum.cpu.zip(t.cpu).map(|(a, b)| a + b),
             wall: sum.wall + t.wall,
+            instructions: None,
         };
-        let nothing = Times { cpu: rustc::HAS_CPU_TIME.then_some(0.0), wall: 0.0 };
+        let cpu = rustc::HAS_CPU_TIME.then_some(0.0);
+        let nothing = Times { cpu, wall: 0.0, instructions: None };
         Ok(Some(of_others.fold(nothing, sum)))
     }
 
@@ -157,6 +161,9 @@ impl Project {
         cargo.current_dir(&self.folder).env("CARGO_TARGET_DIR", self.folder.join("target"));
         let itself = env::current_exe().map_err(|error| format!("this program: {error}"))?;
         cargo.env("RUSTC_WRAPPER", itself).env(rustc::NOTES, &notes);
+        if self.counts && name != FIRST {
+            cargo.env(rustc::COUNTED, name);
+        }
         if let Some(variants) = variants {
             cargo.env("RAYDSL_VARIANTS", variants);
         }

@@ -20,10 +20,11 @@ pub(crate) struct Row {
     /// Seconds that the processors were busy, the median of all runs; of systems that do not say
     /// it, none.
     cpu_s: Option<f64>,
-    /// These, less those of the scalar function alone.
-    over_scalar_s: Option<f64>,
-    /// The interquartile range of the runs, as a share; of the wall seconds if there are no CPU
-    /// seconds.
+    /// Thousand millions of rustc's instructions, the median, where they are counted.
+    instructions: Option<f64>,
+    /// These, or else the CPU seconds, less those of the scalar function alone.
+    over_scalar: Option<f64>,
+    /// The interquartile range of the runs, as a share; of the wall seconds if there is nothing else.
     spread: f64,
     /// Seconds of the day, the median.
     wall_s: f64,
@@ -50,12 +51,18 @@ const FROM_SCRATCH: &str = "edit loop: from scratch";
 
 impl Rows {
     /// No rows, of programs that depend on the library in a workspace.
-    pub(crate) fn new(library: &Path, runs: usize, is_kept: bool) -> Result<Self, String> {
-        let project = Project::new(library, is_kept)?;
+    pub(crate) fn new(
+        library: &Path,
+        runs: usize,
+        is_kept: bool,
+        counts: bool,
+    ) -> Result<Self, String> {
+        let project = Project::new(library, is_kept, counts)?;
         println!("{} in {}", library.display(), project.folder().display());
+        let unit = if counts { "1e9 ins" } else { "CPU s" };
         println!(
-            "{:<14}{:<38}{:<10}{:>8}{:>13}{:>8}{:>8}{:>11}",
-            "case", "command", "variants", "CPU s", "over scalar", "spread", "wall s", "bytes"
+            "{:<14}{:<38}{:<10}{unit:>8}{:>13}{:>8}{:>8}{:>11}",
+            "case", "command", "variants", "over scalar", "spread", "wall s", "bytes"
         );
         Ok(Self { project, runs, rows: Vec::new(), has_variants: None })
     }
@@ -182,22 +189,27 @@ impl Rows {
         bytes: Option<usize>,
     ) -> Option<f64> {
         let wall: Vec<f64> = times.iter().map(|t| t.wall).collect();
+        let instructions: Option<Vec<f64>> = times.iter().map(|t| t.instructions).collect();
+        // Those of a program that simulates a processor say nothing.
         let cpu: Option<Vec<f64>> = times.iter().map(|t| t.cpu).collect();
-        let cpu_s = cpu.as_deref().map(median);
+        let cpu = cpu.filter(|_| instructions.is_none());
+        let figures = instructions.as_ref().or(cpu.as_ref());
+        let figure = figures.map(|figures| median(figures));
         let row = Row {
             case: case.to_owned(),
             command,
             variants: variants.unwrap_or(ALL),
-            cpu_s,
-            over_scalar_s: cpu_s.zip(base).map(|(cpu, base)| cpu - base),
-            spread: spread(cpu.as_ref().unwrap_or(&wall)),
+            cpu_s: cpu.as_deref().map(median),
+            instructions: instructions.as_deref().map(median),
+            over_scalar: figure.zip(base).map(|(figure, base)| figure - base),
+            spread: spread(figures.unwrap_or(&wall)),
             wall_s: median(&wall),
             runs: times.len(),
             bytes,
         };
         print(&row);
         self.rows.push(row);
-        cpu_s
+        figure
     }
 }
 
@@ -212,11 +224,11 @@ fn order<'a>(case: &'a Case, measure: Measure, variants: Option<&'a str>) -> Ord
 }
 
 fn print(row: &Row) {
-    let Row { case, command, variants, cpu_s, over_scalar_s, spread, wall_s, runs, bytes } = row;
+    let Row { case, command, variants, spread, wall_s, runs, bytes, .. } = row;
     let bytes = bytes.map_or("-".to_owned(), |bytes| bytes.to_string());
-    let seconds = |s: Option<f64>| s.map_or("-".to_owned(), |s| format!("{s:.2}"));
-    let (cpu_s, over_scalar_s) = (seconds(*cpu_s), seconds(*over_scalar_s));
+    let digits = |s: Option<f64>| s.map_or("-".to_owned(), |s| format!("{s:.2}"));
+    let (figure, over_scalar) = (digits(row.instructions.or(row.cpu_s)), digits(row.over_scalar));
     let spread = if *runs > 1 { format!("{:.1}%", 100.0 * spread) } else { "-".to_owned() };
-    print!("{case:<14}{command:<38}{variants:<10}{cpu_s:>8}");
-    println!("{over_scalar_s:>13}{spread:>8}{wall_s:>8.2}{bytes:>11}");
+    print!("{case:<14}{command:<38}{variants:<10}{figure:>8}");
+    println!("{over_scalar:>13}{spread:>8}{wall_s:>8.2}{bytes:>11}");
 }
