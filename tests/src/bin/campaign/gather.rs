@@ -11,7 +11,7 @@ use raydsl_tests::gpu::gpu;
 use raydsl_tests::in_parallel;
 use raydsl_tests::rng::Rng;
 
-use crate::measure::{BATCH, MOST_IN_WGSL, PART, Run, other_bits};
+use crate::measure::{BATCH, PART, Run, other_bits};
 use crate::outcome::{Found, Outcome};
 
 /// What is known of results as they come.
@@ -79,7 +79,7 @@ impl Run {
         make: &impl Fn(&mut Rng) -> A,
     ) -> Result<Option<Found>, Box<dyn Error>> {
         let Some(gpu) = gpu() else { return Ok(None) };
-        let count = self.count.min(MOST_IN_WGSL) as usize;
+        let count = self.count_in_wgsl() as usize;
         for start in (0..count).step_by(BATCH) {
             let mut rng = Rng::new(!self.seed ^ start as u64);
             let batch = start..count.min(start + BATCH);

@@ -17,8 +17,6 @@ use crate::row::Unit;
 pub(crate) const PART: usize = 1 << 13;
 /// Inputs of one dispatch.
 pub(crate) const BATCH: usize = 1 << 18;
-/// The largest number of inputs in WGSL.
-pub(crate) const MOST_IN_WGSL: u64 = 1_000_000;
 /// The largest number of inputs in `f64`, in which kernels are interpreted.
 const MOST_IN_F64: u64 = 100_000;
 
@@ -39,6 +37,8 @@ pub(crate) struct Run {
     pub(crate) packets: Vec<Variant>,
     /// Whether WGSL is asked for.
     pub(crate) wgsl: bool,
+    /// The largest number of inputs in WGSL.
+    pub(crate) most_in_wgsl: u64,
     /// Whether the kernel in `f64` is asked for.
     pub(crate) f64: bool,
 }
@@ -49,6 +49,11 @@ impl Run {
         let count = ((self.count as f64 * share) as u64).max(1);
         let seed = self.seed.wrapping_add((part + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15));
         Self { seed, count, packets: self.packets.clone(), ..*self }
+    }
+
+    /// How many inputs in WGSL.
+    pub(crate) fn count_in_wgsl(&self) -> u64 {
+        self.count.min(self.most_in_wgsl)
     }
 
     /// The same without WGSL.
@@ -156,7 +161,7 @@ impl Run {
         judge: &impl Fn(&A, &R) -> Option<f64>,
     ) -> Result<Option<Found>, Box<dyn Error>> {
         let Some(gpu) = gpu() else { return Ok(None) };
-        let count = self.count.min(MOST_IN_WGSL) as usize;
+        let count = self.count_in_wgsl() as usize;
         let mut all = Found::new("wgsl");
         for start in (0..count).step_by(BATCH) {
             let mut rng = Rng::new(!self.seed ^ start as u64);

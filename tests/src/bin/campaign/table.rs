@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use crate::Measured;
 use crate::outcome::{Found, Outcome};
-use crate::row::{Group, Miss, Row, Unit};
+use crate::row::{Bound, Group, Miss, Row, Unit};
 
 /// The head of a group's table.
 pub(crate) fn head(group: &Group) -> String {
@@ -76,7 +76,7 @@ pub(crate) fn markdown(all: &[Measured]) -> String {
         text += "\n| row | inputs | unit | CPU | WGSL | f64 | textbook | bound | clause | |\n";
         text += "|---|--:|---|--:|--:|--:|--:|--:|--:|---|\n";
         for (row, outcome) in rows {
-            let [cpu, wgsl, f64] = cells(outcome);
+            let [cpu, wgsl, f64] = marked(row, outcome);
             let _ = writeln!(
                 text,
                 "| {} | {} | {} | {cpu} | {wgsl} | {f64} | {} | {} | {} | {} |",
@@ -84,7 +84,7 @@ pub(crate) fn markdown(all: &[Measured]) -> String {
                 short_count(most(outcome)),
                 row.unit.name(),
                 textbook(row, outcome),
-                bound(row),
+                bounds(row, !f64.is_empty()),
                 row.clause,
                 verdict(row, outcome),
             );
@@ -115,6 +115,20 @@ fn cells(outcome: &Outcome) -> [String; 3] {
     [cpu, of("wgsl"), of("f64")].map(|worst| worst.map_or_else(String::new, figure))
 }
 
+/// The same for Markdown: what misses its bound is bold.
+fn marked(row: &Row, outcome: &Outcome) -> [String; 3] {
+    let misses = |is_of_column: fn(&str) -> bool| {
+        outcome.found.iter().any(|found| is_of_column(found.variant) && !row.keeps(found))
+    };
+    let marks =
+        [misses(|v| !matches!(v, "wgsl" | "f64")), misses(|v| v == "wgsl"), misses(|v| v == "f64")];
+    let mut cells = cells(outcome);
+    for (cell, _) in cells.iter_mut().zip(marks).filter(|(_, is_missed)| *is_missed) {
+        *cell = format!("**{cell}**");
+    }
+    cells
+}
+
 /// Faults as a share of the inputs, errors as they are.
 fn textbook(row: &Row, outcome: &Outcome) -> String {
     match (outcome.textbook, row.unit) {
@@ -122,6 +136,15 @@ fn textbook(row: &Row, outcome: &Outcome) -> String {
         (Some(share), Unit::Faults) => format!("{:.2} %", 100.0 * share),
         (Some(worst), _) => figure(worst),
     }
+}
+
+/// The bounds of the CPU, of WGSL and of `f64`, if that has a figure and a bound of its own.
+fn bounds(row: &Row, has_f64: bool) -> String {
+    let Bound { cpu, wgsl, f64 } = row.bound;
+    if has_f64 && f64 != wgsl {
+        return [cpu, wgsl, f64].map(figure).join("/");
+    }
+    bound(row)
 }
 
 fn bound(row: &Row) -> String {

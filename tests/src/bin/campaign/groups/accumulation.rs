@@ -12,7 +12,7 @@ use raydsl_tests::in_parallel;
 use raydsl_tests::rng::Rng as Source;
 
 use super::largest;
-use crate::measure::{MOST_IN_WGSL, Run};
+use crate::measure::Run;
 use crate::outcome::{Found, Outcome};
 use crate::row::{Bound, Group, Row, Unit};
 
@@ -148,7 +148,7 @@ fn of_films(
         add(packets.name(), &film, samples, &of_exact);
     }
     if let Some(gpu) = gpu().filter(|_| run.wgsl) {
-        let fewer = samples.min(MOST_IN_WGSL as u32);
+        let fewer = samples.min(run.most_in_wgsl.min(u32::MAX.into()) as u32);
         let mut film = Film::new(PIXELS, 1);
         gpu.accumulate(&camera(), &kernel, &sampling(fewer), &mut film, fewer)?;
         let of_fewer = if fewer == samples { of_exact } else { exact(fewer) };

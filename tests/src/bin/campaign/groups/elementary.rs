@@ -10,7 +10,7 @@ use raydsl_tests::rng::Rng;
 use raydsl_tests::values::SPECIAL_F32;
 
 use super::largest;
-use crate::measure::{MOST_IN_WGSL, Run};
+use crate::measure::Run;
 use crate::row::{Bound, Group, Row, Unit};
 
 pub(crate) const GROUP: Group = Group {
@@ -157,7 +157,7 @@ fn row(case: Case) -> Row {
 
 /// The same for WGSL alone.
 fn on_device(run: &Run) -> Run {
-    let count = run.count.min(MOST_IN_WGSL);
+    let count = run.count_in_wgsl();
     Run { count, scalar: false, packets: Vec::new(), ..*run }
 }
 
