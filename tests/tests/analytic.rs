@@ -10,7 +10,6 @@ use raydsl_report::work_precision::{
     Backend, Case, Estimates, Method, Metrics, Run, Verdict, WorkPrecision,
 };
 use raydsl_tests::gpu::gpu;
-use raydsl_tests::scaled;
 
 // Parts of one example call each other by the names of modules at the crate's root.
 #[path = "../../examples/report/cloud.rs"]
@@ -75,7 +74,7 @@ fn assert_means(cases: &[Case<'_>]) -> Result<(), Box<dyn Error>> {
         Ok(())
     };
     for case in cases {
-        for seed in 0..scaled(8) as u32 {
+        for seed in 0..8 {
             check(case, run(Variant::widest(), seed), &format!("by packets, seed {seed}"))?;
         }
         let Some(gpu) = gpu() else { continue };

@@ -12,10 +12,10 @@ use raydsl_tests::rng::Rng;
 use raydsl_tests::scaled;
 
 /// Over all grids.
-const RAYS: usize = 10_000_000;
-const RAYS_OF_SCALAR_LOOPS: usize = 500_000;
+const RAYS: usize = 4_000_000;
+const RAYS_OF_SCALAR_LOOPS: usize = 200_000;
 const RAYS_OF_WGSL: usize = 400_000;
-const RAYS_WITHOUT_SLACK: usize = 2_000_000;
+const RAYS_WITHOUT_SLACK: usize = 500_000;
 
 /// Cells along an edge of a grid; 128 triangles, few enough for a loop over all of them.
 const CELLS: usize = 8;

@@ -9,10 +9,10 @@ use raydsl_tests::queries::{scalar_answers, slice_view};
 use raydsl_tests::scaled;
 use raydsl_tests::scenes::{broken_rays, random_rays};
 
-const RAYS: usize = 40_000;
-const RAYS_OF_SLICES: usize = 10_000;
+const RAYS: usize = 16_000;
+const RAYS_OF_SLICES: usize = 4000;
 /// Of each row and size.
-const RAYS_OF_BOXES: usize = 4000;
+const RAYS_OF_BOXES: usize = 1600;
 
 macro_rules! levels {
     ($scene:ident) => {
