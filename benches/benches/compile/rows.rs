@@ -38,6 +38,8 @@ pub(crate) struct Row {
 pub(crate) struct Rows {
     project: Project,
     runs: usize,
+    /// Whether the table has instructions, not seconds.
+    counts: bool,
     rows: Vec<Row>,
     /// Whether the library's macros read `RAYDSL_VARIANTS`, if that is known.
     has_variants: Option<bool>,
@@ -64,7 +66,7 @@ impl Rows {
             "{:<14}{:<38}{:<10}{unit:>8}{:>13}{:>8}{:>8}{:>11}",
             "case", "command", "variants", "over scalar", "spread", "wall s", "bytes"
         );
-        Ok(Self { project, runs, rows: Vec::new(), has_variants: None })
+        Ok(Self { project, runs, counts, rows: Vec::new(), has_variants: None })
     }
 
     /// The rows.
@@ -207,7 +209,7 @@ impl Rows {
             runs: times.len(),
             bytes,
         };
-        print(&row);
+        print(&row, self.counts);
         self.rows.push(row);
         figure
     }
@@ -223,11 +225,12 @@ fn order<'a>(case: &'a Case, measure: Measure, variants: Option<&'a str>) -> Ord
     Order { name: &case.name, source: &case.source, profile, options, variants }
 }
 
-fn print(row: &Row) {
+fn print(row: &Row, counts: bool) {
     let Row { case, command, variants, spread, wall_s, runs, bytes, .. } = row;
     let bytes = bytes.map_or("-".to_owned(), |bytes| bytes.to_string());
     let digits = |s: Option<f64>| s.map_or("-".to_owned(), |s| format!("{s:.2}"));
-    let (figure, over_scalar) = (digits(row.instructions.or(row.cpu_s)), digits(row.over_scalar));
+    let figure = digits(if counts { row.instructions } else { row.cpu_s });
+    let over_scalar = digits(row.over_scalar);
     let spread = if *runs > 1 { format!("{:.1}%", 100.0 * spread) } else { "-".to_owned() };
     print!("{case:<14}{command:<38}{variants:<10}{figure:>8}");
     println!("{over_scalar:>13}{spread:>8}{wall_s:>8.2}{bytes:>11}");
