@@ -1,6 +1,6 @@
 //! Leaves out what the machine that builds the tests cannot run: without AVX-512, `packet16` runs the
-//! copy of `packet8`, so the copy of sixteen lanes would only be compiled, a fifth of the time that
-//! the tests take to build. The examples, the benchmarks and the lints compile it everywhere.
+//! copy of `packet8`, so the copy of sixteen lanes would only be compiled. The examples, the benchmarks
+//! and the lints compile it everywhere.
 
 fn main() {
     println!("cargo:rerun-if-changed=build.rs");
@@ -20,8 +20,11 @@ fn targets_x86() -> bool {
 /// Whether the tests run here, and on a machine with AVX-512.
 #[cfg(target_arch = "x86_64")]
 fn runs_avx512() -> bool {
-    // What `fearless_simd` asks for: Ice Lake's.
-    targets_x86() && std::arch::is_x86_feature_detected!("avx512f")
+    // The newest of what `fearless_simd` asks for, Ice Lake's: processors with less run AVX2.
+    targets_x86()
+        && std::arch::is_x86_feature_detected!("avx512f")
+        && std::arch::is_x86_feature_detected!("avx512bitalg")
+        && std::arch::is_x86_feature_detected!("avx512vbmi2")
 }
 
 #[cfg(not(target_arch = "x86_64"))]
