@@ -90,6 +90,7 @@ pub(crate) fn all() -> Vec<Case> {
             &[Release],
         ),
         case("triangles", include_str!("programs/triangles.rs"), &[Release]),
+        case("lights", include_str!("programs/lights.rs"), &[Release]),
         Case {
             edit: Some(["throughput.max_element(), 0.95)", "throughput.max_element(), 0.96)"]),
             ..case("path_tracer", include_str!("programs/path_tracer.rs"), &[Release, Edit])

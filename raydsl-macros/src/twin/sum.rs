@@ -255,13 +255,13 @@ impl Sum {
         quote! {
             #[allow(clippy::redundant_field_names, reason = "some fields are stored as they are")]
             impl<#declared> #host where #predicates {
-                #[inline(always)]
+                #[inline]
                 fn __data(self) -> #data_type {
                     match self { #(#to)* }
                 }
 
                 /// The first variant for a number that no variant has.
-                #[inline(always)]
+                #[inline]
                 fn __of_data(data: #data_type) -> Self {
                     match data.kind.0 {
                         #(#numbers => #others,)*
@@ -294,7 +294,7 @@ impl Sum {
                     m: &__M,
                     f: impl Fn(usize) -> Self + Copy,
                 ) -> #twin {
-                    #p::Type::from_lanes(m, #[inline(always)] |lane| f(lane).__data())
+                    #p::from_each_lane(m, #[inline(always)] |lane| f(lane).__data())
                 }
 
                 #[inline(always)]

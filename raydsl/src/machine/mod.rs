@@ -138,7 +138,7 @@ pub mod lifted {
     pub use super::option::{OptionOn, Options, zero_of};
     pub use super::schema::Places;
     pub use super::twin::{Inferred, Twin};
-    pub use super::types::LaneMachine;
+    pub use super::types::{LaneMachine, from_each_lane};
     pub use super::value::Leaves;
     pub use super::words::{host_of_words, is_kind, of_kind, of_words, to_words, to_words_on};
 }

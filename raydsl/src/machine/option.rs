@@ -3,13 +3,14 @@
 use core::marker::PhantomData;
 
 use super::ops::{Comparable, OpCompare};
+use super::types::from_each_lane;
 use super::{
     B, Compare, Field, Inferred, LaneMachine, Leaves, Machine, Method, Op, Scalar, Schema, Twin,
     Type, Value, Varying, index, name,
 };
 
 /// Returns a value of the host whose scalars are 0.
-#[inline(always)]
+#[inline]
 pub fn zero_of<T: Type>() -> T {
     T::lane::<Scalar>(&T::On::zero(&Scalar::default()), 0)
 }
@@ -111,7 +112,7 @@ impl<T: Type> Type for Option<T> {
                 #[inline(always)]
                 |lane| f(lane).is_some(),
             ),
-            T::from_lanes(
+            from_each_lane(
                 m,
                 #[inline(always)]
                 |lane| f(lane).unwrap_or_else(zero_of),

@@ -1,8 +1,8 @@
 //! SIMD packets with masked control flow: one register per value and an active mask.
 
 use core::cell::Cell;
-use core::mem::MaybeUninit;
 
+use super::types::from_each_lane;
 use super::*;
 
 /// A machine of [`Lanes::N`] lanes with masked control flow.
@@ -89,29 +89,10 @@ impl<L: Lanes> Packet<L> {
         of_lane: impl Fn(usize) -> T,
     ) -> T::On<Self> {
         let active = self.lanes.bits(self.active.get());
-        self.of_each(
-            #[inline(always)]
-            |lane| if active >> lane & 1 != 0 { of_lane(lane) } else { other },
-        )
-    }
-
-    /// Returns `of_lane` of each lane, called once per lane: a value with many members is split
-    /// from its place in memory.
-    #[inline(always)]
-    fn of_each<T: Type>(&self, of_lane: impl Fn(usize) -> T) -> T::On<Self> {
-        const { assert!(L::N <= 64) };
-        let mut all = [const { MaybeUninit::<T>::uninit() }; 64];
-        for (lane, value) in all.iter_mut().enumerate().take(L::N) {
-            value.write(of_lane(lane));
-        }
-        T::from_lanes(
+        from_each_lane(
             self,
             #[inline(always)]
-            |lane| {
-                assert!(lane < L::N);
-                // SAFETY: the first `N` have been written.
-                unsafe { all[lane].assume_init() }
-            },
+            |lane| if active >> lane & 1 != 0 { of_lane(lane) } else { other },
         )
     }
 
@@ -622,7 +603,8 @@ impl<L: Lanes> Packet<L> {
         }
         // A lane that is not running may hold any index.
         let index = self.lanes.u32_select(active, index.0, self.lanes.u32(first));
-        self.of_each(
+        from_each_lane(
+            self,
             #[inline(always)]
             |lane| get(L::u32_lane(&index, lane)),
         )

@@ -1,5 +1,7 @@
 //! Host types that kernels understand, and their conversion to lanes and back.
 
+use core::mem::MaybeUninit;
+
 use glam::{BVec2, BVec3, BVec4, IVec2, IVec3, IVec4, UVec2, UVec3, UVec4, Vec2, Vec3, Vec4};
 
 use super::schema::{Places, stride_of};
@@ -45,6 +47,26 @@ pub trait LaneMachine: Machine {
     fn i32_lane(v: &Self::I32, lane: usize) -> i32;
     fn u32_lane(v: &Self::U32, lane: usize) -> u32;
     fn bool_lane(v: &Self::Bool, lane: usize) -> bool;
+}
+
+/// Returns a value per lane like [`Type::from_lanes`], which calls its function for each scalar of the
+/// type: here `f` is called, and compiled, once. For values that are computed, not only read.
+#[inline(always)]
+pub fn from_each_lane<M: LaneMachine, T: Type>(m: &M, f: impl Fn(usize) -> T) -> T::On<M> {
+    const { assert!(M::LANES <= 64) };
+    let mut all = [const { MaybeUninit::<T>::uninit() }; 64];
+    for (lane, value) in all.iter_mut().enumerate().take(M::LANES) {
+        value.write(f(lane));
+    }
+    T::from_lanes(
+        m,
+        #[inline(always)]
+        |lane| {
+            assert!(lane < M::LANES);
+            // SAFETY: the first `LANES` have been written.
+            unsafe { all[lane].assume_init() }
+        },
+    )
 }
 
 macro_rules! read_scalar {

@@ -3,7 +3,7 @@
 use super::{B, Branch, Kinds, Leaves, Machine, Scalar, Type, U, Value, op};
 
 /// Converts a value to words; those beyond its scalars are 0.
-#[inline(always)]
+#[inline]
 pub fn to_words<T: Type, const N: usize>(v: T) -> [u32; N] {
     let m = Scalar::default();
     to_words_on::<Scalar, T, N>(&m, T::splat(&m, v)).map(|w| w.0)
@@ -25,6 +25,7 @@ pub fn of_words<M: Machine, T: Type, const N: usize>(m: &M, words: [U<M>; N]) ->
 }
 
 /// Converts words to a value of the host.
+#[inline]
 pub fn host_of_words<T: Type, const N: usize>(words: [u32; N]) -> T {
     T::lane::<Scalar>(&of_words::<Scalar, T, N>(&Scalar::default(), words.map(U)), 0)
 }

@@ -58,11 +58,9 @@ impl Workshop {
     pub fn new(folder: &Path, target_folder: &Path, test: &str) -> Self {
         let cargo = std::env::var("CARGO").unwrap_or_else(|_| "cargo".to_owned());
         let mut command = Command::new(cargo);
-        // The features of dependencies follow from the packages that are asked for. This is what a
-        // test of the whole workspace builds, so there it builds nothing. The viewer, which is no default
-        // member, has a window among its dependencies.
-        command.args(["test", "--no-run", "--message-format", "json", "--workspace"]);
-        command.args(["--exclude", "raydsl-viewer"]);
+        // The features of dependencies follow from the packages that are asked for: the default members, as
+        // of `cargo test` in the root, which has built all of this.
+        command.args(["test", "--no-run", "--message-format", "json"]);
         command.args(["--test", test, "--target-dir"]).arg(target_folder);
         // As they are here, or all of it is built again.
         if cfg!(all(feature = "flip", feature = "counts")) {
@@ -73,7 +71,7 @@ impl Workshop {
         if !cfg!(debug_assertions) {
             command.arg("--release");
         }
-        command.current_dir(env!("CARGO_MANIFEST_DIR"));
+        command.current_dir(concat!(env!("CARGO_MANIFEST_DIR"), "/.."));
         let output = command.output().expect("cargo can be started");
         let messages = String::from_utf8_lossy(&output.stdout);
         let errors = String::from_utf8_lossy(&output.stderr);
