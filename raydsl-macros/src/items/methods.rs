@@ -24,7 +24,11 @@ pub(crate) fn kernel_impl(
     if operators::is_operator(item) {
         return operators::operator_impl(item, errors);
     }
-    let Lifted { functions, methods } = lifted_impl(item, host_only, errors);
+    let Some(type_name) = parse::type_name(&item.self_ty) else {
+        errors.at(item.self_ty.span(), "kernels belong to a named type", "name a struct");
+        return without_markers(item.to_token_stream());
+    };
+    let Lifted { functions, methods } = lifted_impl(item, &type_name, host_only, errors);
     let around = Generics::new(&item.generics);
     let Generics { declared, predicates, .. } = &around;
     let self_ty = &item.self_ty;
@@ -55,13 +59,14 @@ struct Lifted {
     methods: TokenStream,
 }
 
-fn lifted_impl(item: &syn::ItemImpl, host_only: &[&str], errors: &mut Errors) -> Lifted {
+fn lifted_impl(
+    item: &syn::ItemImpl,
+    type_name: &str,
+    host_only: &[&str],
+    errors: &mut Errors,
+) -> Lifted {
     let mut lifted = Lifted { functions: TokenStream::new(), methods: TokenStream::new() };
     let self_ty = item.self_ty.to_token_stream();
-    let Some(type_name) = parse::type_name(&item.self_ty) else {
-        errors.at(item.self_ty.span(), "kernels belong to a named type", "name a struct");
-        return lifted;
-    };
     let around = Generics::new(&item.generics);
     let owner = match &item.trait_ {
         Some((path, _)) => quote!(<#self_ty as #path>),

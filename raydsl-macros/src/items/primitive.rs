@@ -83,7 +83,8 @@ pub(crate) fn primitive_impl(item: &syn::ItemImpl) -> TokenStream {
 /// Expands a primitive with mistakes: it is a primitive all the same, so that its trees give no
 /// second error.
 fn mistaken(item: &syn::ItemImpl, parts: &Parts<'_>) -> TokenStream {
-    if item.trait_.is_some() || !item.generics.params.is_empty() {
+    let is_named = type_name(&item.self_ty).is_some();
+    if item.trait_.is_some() || !item.generics.params.is_empty() || !is_named {
         return TokenStream::new();
     }
     let (p, self_ty) = (private(), &item.self_ty);
