@@ -64,8 +64,15 @@ impl Adaptive {
     }
 }
 
-/// Share of a cell below which a step is taken whatever its error.
+/// Share of a cell below which a step is taken whatever its error, if it is thin.
 const SHORTEST: f32 = 1.0 / 1024.0;
+
+/// The same of a thick step, whose beginning hides its end: its colour is as wrong as colours differ
+/// within it. Few are taken until no light is left.
+const SHORTEST_THICK: f32 = 1.0 / 131_072.0;
+
+/// Optical depth above which a step is thick.
+const THICK: f32 = 1.0;
 
 /// Difference of the values at both ends of a step, as a share of them, below which the step is
 /// taken whatever its error: the values are rounded.
@@ -82,6 +89,7 @@ const ROUNDING: f32 = 4e-7;
 struct Tried {
     layer: Layer,
     is_good: bool,
+    is_thick: bool,
     /// Factor of the step's length for the next one.
     factor: f32,
 }
@@ -120,7 +128,8 @@ fn tried(
     allowed: f32,
 ) -> Tried {
     let whole = part_of(function, a, b, run);
-    let mut found = Tried { layer, is_good: true, factor: 4.0 };
+    let is_thick = whole.depth > THICK;
+    let mut found = Tried { layer, is_good: true, is_thick, factor: 4.0 };
     if whole.depth > 0.0 {
         let near = part_of(function, a, between, run * DIVISION);
         let far = part_of(function, between, b, run * (1.0 - DIVISION));
@@ -155,11 +164,12 @@ fn add_cell(
     let extremes = cubic.extremes();
     let mut x = 0.0;
     let mut value = cubic.c0;
+    let mut shortest = SHORTEST;
     while x < 1.0 {
         // The value is monotone up to the next extreme place.
         let stop = next_extreme(extremes, x);
         // A NaN, of a cell without length, becomes the shortest.
-        let share = max(SHORTEST, min(*width / length, 1.0));
+        let share = max(shortest, min(*width / length, 1.0));
         let end = min(x + share, stop);
         let step = end - x;
         let (between, last) = (cubic.at(x + step * DIVISION), cubic.at(end));
@@ -167,13 +177,17 @@ fn add_cell(
         let found = tried(*layer, function, (value, between, last), step * length, limit);
         let next = step * length * found.factor;
         let is_narrow = (last - value).abs() <= NARROWEST * max(last.abs(), value.abs());
-        if found.is_good | is_narrow | (share <= SHORTEST) {
+        let least = if found.is_thick { SHORTEST_THICK } else { SHORTEST };
+        if found.is_good | is_narrow | (share <= least) {
+            shortest = SHORTEST;
             *layer = found.layer;
             x = end;
             value = last;
             // A step that the cell ended says nothing against longer ones.
             *width = if end == stop { max(*width, next) } else { next };
         } else {
+            // Taken at its shortest, were it not thick.
+            shortest = if share <= SHORTEST { SHORTEST_THICK } else { SHORTEST };
             *width = next;
         }
     }
