@@ -8,7 +8,7 @@ use raydsl_tests::hard_rays::boxes::{self, EXPONENTS, ROWS};
 use raydsl_tests::rng::Rng;
 use raydsl_tests::scenes;
 
-use super::{closest, fault};
+use super::{closest, fault, tree};
 use crate::outcome::{Found, Outcome};
 use crate::row::{Bound, Group, Row, Unit};
 use crate::timing::ratio;
@@ -37,7 +37,8 @@ fn rows() -> Vec<Row> {
     all
 }
 
-/// The textbook is the test in IEEE arithmetic, with nothing allowed for rounding, without a tree.
+/// Every second tree is wide. The textbook is the test in IEEE arithmetic, with nothing allowed for
+/// rounding, without a tree.
 fn lost(row: &'static boxes::Row) -> Row {
     Row::new(row.name, 1, Unit::Faults, Bound::NONE, |run| {
         let mut all = Outcome::default();
@@ -48,14 +49,14 @@ fn lost(row: &'static boxes::Row) -> Row {
             for seed in 0..TREES {
                 let marks = boxes::marks(row, seed);
                 let scene = boxes::at_scale(&marks, scale);
-                let bvh = Bvh::build(&scene)?;
+                let bvh = tree(&scene, seed % 2 == 1)?;
                 let kernels = [
                     kernel!(|ray: Ray| bvh.closest_hit(ray).is_hit),
                     kernel!(|ray: Ray| bvh.any_hit(ray)),
                 ];
                 let part = run.part(share, i as u64 * TREES + seed);
-                // One tree at each size: another one is sent to the device, and asked little.
-                let part = if seed == 0 { part } else { part.without_wgsl() };
+                // One tree of each kind at each size: another one is sent to the device, and asked little.
+                let part = if seed <= 1 { part } else { part.without_wgsl() };
                 let ray = |rng: &mut _| boxes::ray(rng, row, &marks, scale);
                 let outcome =
                     part.measure(&kernels, |rng| (ray(rng),), |_, is_hit| fault(!is_hit))?;

@@ -22,6 +22,7 @@ mod volumes;
 
 use std::error::Error;
 
+use raydsl::bvh::BuildError;
 use raydsl::prelude::*;
 
 use crate::outcome::Outcome;
@@ -60,6 +61,14 @@ const FLUSHED: &str = "On a device that takes denormals for 0: products of coord
 /// 1 for a fault.
 fn fault(is_wrong: bool) -> Option<f64> {
     Some(f64::from(u8::from(is_wrong)))
+}
+
+/// Builds a tree, a binary or a wide one, however few the primitives are.
+fn tree<P: Primitive<Shared = ()>>(prims: &[P], is_wide: bool) -> Result<Bvh<'_, P>, BuildError> {
+    if !is_wide {
+        return Bvh::build(prims);
+    }
+    Bvh::build_wide(prims, &[], &BuildConfig { min_wide_size: 0, ..BuildConfig::default() })
 }
 
 /// A kernel for the closest hit of a ray.

@@ -11,7 +11,7 @@ use raydsl_tests::hard_rays::wide::{D3, cross, dot, minus, plus, wide};
 use raydsl_tests::rng::Rng;
 use raydsl_tests::scenes;
 
-use super::{FLUSHED, closest, fault};
+use super::{FLUSHED, closest, fault, tree};
 use crate::outcome::Outcome;
 use crate::row::{Bound, Group, Row, Unit};
 
@@ -44,21 +44,27 @@ fn rows() -> Vec<Row> {
     all
 }
 
-/// The textbook is Möller and Trumbore's test, without a tree.
+/// Half of the rays go through a wide tree. The textbook is Möller and Trumbore's test, without a tree.
 fn seams_at(place: &'static Place) -> Row {
     Row::new(place.name, 1, Unit::Faults, Bound::NONE, |run| {
         let mesh = Icosphere::new(place.center, place.radius);
         let triangles = mesh.triangles();
-        let bvh = Bvh::build(&triangles)?;
-        let kernels =
-            [kernel!(|ray: Ray| bvh.closest_hit(ray).is_hit), kernel!(|ray: Ray| bvh.any_hit(ray))];
-        let outcome =
-            run.measure(&kernels, |rng| (seams::ray(&mesh, rng),), |_, is_hit| fault(!is_hit))?;
+        let mut all = Outcome::default();
+        for (i, is_wide) in [false, true].into_iter().enumerate() {
+            let bvh = tree(&triangles, is_wide)?;
+            let kernels = [
+                kernel!(|ray: Ray| bvh.closest_hit(ray).is_hit),
+                kernel!(|ray: Ray| bvh.any_hit(ray)),
+            ];
+            let part = run.part(0.5, i as u64);
+            let make = |rng: &mut Rng| (seams::ray(&mesh, rng),);
+            all.merge(run.unit, part.measure(&kernels, make, |_, is_hit| fault(!is_hit))?);
+        }
         let textbook = run.broken_by(run.count / 100, |rng| {
             let ray = seams::ray(&mesh, rng);
             !triangles.iter().any(|t| textbook(&ray, t))
         });
-        Ok(outcome.beside(textbook))
+        Ok(all.beside(textbook))
     })
 }
 
@@ -111,7 +117,7 @@ impl Slit {
     }
 }
 
-/// The textbook is Möller and Trumbore's test.
+/// Every second tree is wide. The textbook is Möller and Trumbore's test.
 fn sliver(height: f32) -> Row {
     Row::new(format!("sliver of 1 by {height:e}"), 1, Unit::Faults, Bound::NONE, move |run| {
         const PLANES: u64 = 8;
@@ -120,10 +126,10 @@ fn sliver(height: f32) -> Row {
         for seed in 0..PLANES {
             let slit = Slit::new(&mut Rng::new(seed), height);
             let triangles = slit.triangles();
-            let bvh = Bvh::build(&triangles)?;
+            let bvh = tree(&triangles, seed % 2 == 1)?;
             let part = run.part(1.0 / PLANES as f64, seed);
-            // One tree: another one is sent to the device, and asked little.
-            let part = if seed == 0 { part } else { part.without_wgsl() };
+            // One tree of each kind: another one is sent to the device, and asked little.
+            let part = if seed <= 1 { part } else { part.without_wgsl() };
             let make = |rng: &mut Rng| (slit.ray(rng),);
             let outcome = closest(&bvh, |kernel| {
                 part.measure(slice::from_ref(kernel), make, |_, hit| fault(!hit.is_hit))
