@@ -34,11 +34,12 @@ pub fn explain(programs: &[Explained<'_>]) -> Result<String, InvalidProgram> {
         rows.push((name, features, size, pipeline));
     }
     let mut table = format!(
-        "{:<16}{:>11}{:>11}{:>14}{:>10}{:>9}{:>11}{:>10}\n",
+        "{:<16}{:>11}{:>10}{:>13}{:>10}{:>9}{:>9}{:>10}{:>12}\n",
         "program",
         "WGSL bytes",
         "functions",
         "instructions",
+        "in loops",
         "bindings",
         "private",
         "workgroup",
@@ -46,9 +47,9 @@ pub fn explain(programs: &[Explained<'_>]) -> Result<String, InvalidProgram> {
     );
     for (name, _, size, pipeline) in &rows {
         let ms = pipeline.map_or("-".to_owned(), |ms| format!("{ms:.1} ms"));
-        let ProgramSize { wgsl_bytes, functions, instructions, bindings, .. } = size;
+        let ProgramSize { wgsl_bytes, functions, instructions, in_loops, bindings, .. } = size;
         table += &format!(
-            "{name:<16}{wgsl_bytes:>11}{functions:>11}{instructions:>14}{bindings:>10}{:>9}{:>11}{ms:>10}\n",
+            "{name:<16}{wgsl_bytes:>11}{functions:>10}{instructions:>13}{in_loops:>10}{bindings:>9}{:>9}{:>10}{ms:>12}\n",
             size.private_bytes, size.workgroup_bytes
         );
     }
@@ -57,11 +58,12 @@ pub fn explain(programs: &[Explained<'_>]) -> Result<String, InvalidProgram> {
         for (name, _, size, pipeline) in others {
             let ms = pipeline.zip(*all_pipeline);
             table += &format!(
-                "{:<16}{:>11}{:>11}{:>14}{:>10}{:>9}{:>11}{:>10}\n",
+                "{:<16}{:>11}{:>10}{:>13}{:>10}{:>9}{:>9}{:>10}{:>12}\n",
                 format!("{name}, of all"),
                 share(size.wgsl_bytes, all.wgsl_bytes),
                 share(size.functions, all.functions),
                 share(size.instructions, all.instructions),
+                share(size.in_loops, all.in_loops),
                 share(size.bindings, all.bindings),
                 share(size.private_bytes as usize, all.private_bytes as usize),
                 "",

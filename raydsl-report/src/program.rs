@@ -46,6 +46,9 @@ pub struct ProgramSize {
     pub instructions: usize,
     /// Those of its functions alone.
     pub code: usize,
+    /// Those that may run more than once for an invocation: in loops, and of functions that are called
+    /// in loops.
+    pub in_loops: usize,
     /// Buffers, textures and samplers.
     pub bindings: usize,
     /// Bytes of the variables of all functions: stacks of traversals, above all.
@@ -91,6 +94,7 @@ impl Program {
             functions: functions.len(),
             instructions: instructions(&words).count(),
             code: code(&words),
+            in_loops: in_loops(&words),
             bindings: bindings.len(),
             private_bytes: private_bytes(&module),
             workgroup_bytes: bytes_of(&module, AddressSpace::WorkGroup),
@@ -163,20 +167,79 @@ const HEADER: usize = 5;
 
 /// The opcode that begins a function.
 const OP_FUNCTION: u32 = 54;
+/// The opcode of a call.
+const OP_FUNCTION_CALL: u32 = 57;
+/// The opcode that stands in a loop's first block, and names the block behind the loop.
+const OP_LOOP_MERGE: u32 = 246;
+/// The opcode that begins a block.
+const OP_LABEL: u32 = 248;
 
-/// Returns the opcodes of a module, in order.
-fn instructions(words: &[u32]) -> impl Iterator<Item = u32> {
-    let mut at = HEADER;
+/// Returns the instructions of a module, in order: the opcode, and the words behind it.
+fn instructions(words: &[u32]) -> impl Iterator<Item = (u32, &[u32])> {
+    let mut rest = words.get(HEADER..).unwrap_or_default();
     core::iter::from_fn(move || {
-        let word = *words.get(at)?;
-        at += (word >> 16).max(1) as usize;
-        Some(word & 0xffff)
+        let (first, _) = rest.split_first()?;
+        let length = ((first >> 16).max(1) as usize).min(rest.len());
+        let (instruction, behind) = rest.split_at(length);
+        rest = behind;
+        Some((first & 0xffff, &instruction[1..]))
     })
 }
 
 /// Returns the number of instructions from the first function on.
 fn code(words: &[u32]) -> usize {
-    instructions(words).skip_while(|opcode| *opcode != OP_FUNCTION).count()
+    instructions(words).skip_while(|(opcode, _)| *opcode != OP_FUNCTION).count()
+}
+
+/// A function of a module.
+#[derive(Default)]
+struct Counted {
+    id: u32,
+    instructions: usize,
+    in_loops: usize,
+    /// The functions that it calls, and whether it does in a loop.
+    calls: Vec<(u32, bool)>,
+}
+
+/// Returns the number of instructions in loops, and of functions that are called there. Blocks are
+/// written in order: those of a loop come before the one behind it.
+fn in_loops(words: &[u32]) -> usize {
+    let mut functions: Vec<Counted> = Vec::new();
+    let mut ends: Vec<u32> = Vec::new();
+    for (opcode, operands) in instructions(words) {
+        match (opcode, operands) {
+            (OP_FUNCTION, [_, id, ..]) => {
+                functions.push(Counted { id: *id, ..Counted::default() });
+                ends.clear();
+            }
+            (OP_LOOP_MERGE, [end, ..]) => ends.push(*end),
+            (OP_LABEL, [id, ..]) if ends.last() == Some(id) => drop(ends.pop()),
+            _ => {}
+        }
+        let Some(function) = functions.last_mut() else { continue };
+        function.instructions += 1;
+        function.in_loops += usize::from(!ends.is_empty());
+        if let (OP_FUNCTION_CALL, [_, _, id, ..]) = (opcode, operands) {
+            function.calls.push((*id, !ends.is_empty()));
+        }
+    }
+    // All of a function that is called in a loop, and of those that it calls. WGSL has no recursion.
+    let calls = functions.iter().flat_map(|f| &f.calls);
+    let mut repeated: Vec<u32> = calls.filter(|(_, in_loop)| *in_loop).map(|(id, _)| *id).collect();
+    repeated.sort_unstable();
+    repeated.dedup();
+    let mut next = 0;
+    while let Some(&caller) = repeated.get(next) {
+        let callers = functions.iter().filter(|f| f.id == caller);
+        for (id, _) in callers.flat_map(|f| &f.calls) {
+            if !repeated.contains(id) {
+                repeated.push(*id);
+            }
+        }
+        next += 1;
+    }
+    let count = |f: &Counted| if repeated.contains(&f.id) { f.instructions } else { f.in_loops };
+    functions.iter().map(count).sum()
 }
 
 #[cfg(test)]
@@ -212,7 +275,44 @@ fn main(@builtin(local_invocation_index) i: u32) {
         assert_eq!((size.private_bytes, size.workgroup_bytes, size.bindings), (64, 32, 2));
         assert_eq!(size.wgsl_bytes, TEXT.len());
         assert!(size.code > 20 && size.code < size.instructions, "{size:?}");
+        assert_eq!(size.in_loops, 0);
         assert!(Program::read("fn f() -> f32 { return 1u; }").is_err());
+        Ok(())
+    }
+
+    #[test]
+    fn what_loops_run_is_counted() -> Result<(), InvalidProgram> {
+        let text = |inner: &str, behind: &str| {
+            format!(
+                "
+@group(0) @binding(0) var<storage, read_write> out: array<f32>;
+fn below(x: f32) -> f32 {{ return x * 3.0 + 1.0; }}
+fn twice(x: f32) -> f32 {{ return below(x) * 2.0; }}
+@compute @workgroup_size(8)
+fn main(@builtin(local_invocation_index) i: u32) {{
+    var sum = 0.0;
+    for (var k = 0u; k < i; k++) {{
+        sum += f32(k);
+        {inner}
+    }}
+    {behind}
+    out[i] = sum;
+}}
+"
+            )
+        };
+        let count = |inner, behind| Program::read(&text(inner, behind)).map(|p| p.size.in_loops);
+        let plain = count("", "")?;
+        assert!(plain > 5, "{plain}");
+        // What stands behind the loop runs once.
+        assert_eq!(count("", "sum = twice(sum) * 7.0;")?, plain);
+        let more = count("sum = sum * 7.0;", "")?;
+        assert!(more > plain && more < plain + 6, "{more} {plain}");
+        // Both functions, and the call.
+        let called = count("sum = twice(sum);", "")?;
+        assert!(called > plain + 10, "{called} {plain}");
+        let within = count("for (var j = 0u; j < k; j++) { sum *= 2.0; }", "")?;
+        assert!(within > plain + 5, "{within} {plain}");
         Ok(())
     }
 }
