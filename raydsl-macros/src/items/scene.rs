@@ -70,8 +70,20 @@ fn members(item: &syn::DeriveInput, errors: &mut Errors) -> (Vec<Member>, Vec<Me
         );
     }
     for Member { ty, .. } in scenes.iter().chain(&tables) {
-        if let syn::Type::Slice(_) = ty {
-            errors.at(ty.span(), "a member is a scene or a table of its own", "write `&'a [P]`");
+        match ty {
+            syn::Type::Slice(_) => {
+                errors.at(
+                    ty.span(),
+                    "a member is a scene or a table of its own",
+                    "write `&'a [P]`",
+                );
+            }
+            syn::Type::TraitObject(_) => errors.at(
+                ty.span(),
+                "a member of any type is no scene or table that a kernel can read",
+                "write the type itself",
+            ),
+            _ => {}
         }
     }
     (scenes, tables)

@@ -3,7 +3,7 @@
 use proc_macro2::TokenStream;
 use quote::quote;
 
-use crate::{expand_closure, expand_kernel, expand_primitive, twin};
+use crate::{expand_closure, expand_kernel, expand_primitive, items, twin};
 
 /// Returns the texts of the `compile_error!` calls in `tokens`.
 pub(super) fn errors(tokens: TokenStream) -> Vec<String> {
@@ -351,6 +351,29 @@ fn derives() -> syn::Result<()> {
         ),
     ] {
         let found = errors(twin::derive(&syn::parse2(item)?));
+        assert_eq!(found.len(), 1, "{found:?}");
+        assert!(found[0].contains(what) && found[0].contains("help: "), "{found:?}");
+    }
+    for (item, what) in [
+        (
+            quote!(
+                struct Both<'a> {
+                    first: [P],
+                    second: Bvh<'a, P>,
+                }
+            ),
+            "of its own",
+        ),
+        (
+            quote!(
+                struct One<'a> {
+                    only: dyn Scene + 'a,
+                }
+            ),
+            "of any type",
+        ),
+    ] {
+        let found = errors(items::scene(&syn::parse2(item)?, true));
         assert_eq!(found.len(), 1, "{found:?}");
         assert!(found[0].contains(what) && found[0].contains("help: "), "{found:?}");
     }

@@ -205,6 +205,10 @@ fn variants_that_failed() {
     let cases = [
         (Entry::Kernel, "impl Particle + { fn mass(self) -> f32 { 1.0 } }"),
         (Entry::Kernel, "impl Shade for Particle + { fn shade(self) -> f32 { 1.0 } }"),
+        (Entry::Scene, "struct Both<'a> { first: List<'a, Ball>, second: Bvh<'a, Wall> + }"),
+        (Entry::RayQuery, "struct One<'a> { only: Bvh<'a, Wall> + }"),
+        (Entry::Type, "struct Pair { a: f32, b: Vec3 + }"),
+        (Entry::HitRecord, "struct Met { t: f32, id: u32, is_hit: bool, b: Vec3 + }"),
         (Entry::Primitive(""), "impl Sphere + { fn get_bounds(&self) -> Aabb { Aabb::EMPTY } }"),
     ];
     for (entry, text) in cases {

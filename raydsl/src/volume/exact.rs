@@ -11,12 +11,13 @@ use super::transfer::{TransferFunction, TransferKnot};
 use super::volume::{Volume, VolumeView};
 use super::voxel::{Corners, Voxel};
 use crate::geometry::{Ray, RayOn};
-use crate::machine::functions::vec3;
+use crate::machine::functions::{vec2, vec3};
 use crate::machine::generic::{clamp, length, max, min};
-use crate::machine::{Machine, On};
+use crate::machine::margin::{Interval as Range, Known};
+use crate::machine::{KnownFunction, Machine, Margin, On};
 use crate::math::elementary::{exp, expm1};
 use crate::{Type, kernel};
-use glam::{Vec3, vec3};
+use glam::{Vec2, Vec3, vec2, vec3};
 
 /// Integrates each cell of the grid exactly, whatever its optical depth: no step to choose.
 ///
@@ -29,8 +30,8 @@ use glam::{Vec3, vec3};
 /// passes.
 ///
 /// So opacity is right to rounding, radiance is between the least and the greatest colour that the
-/// ray meets; the rule is right to some 6e-6. Where the function has a step, rounding moves its
-/// place. (Splitting at the knots: Weiss and Westermann, "Analytic Ray Splitting for Controlled
+/// ray meets; the rule is right to some 6e-6, and the reference in `f64` has the integral itself. Where
+/// the function has a step, rounding moves its place. (Splitting at the knots: Weiss and Westermann, "Analytic Ray Splitting for Controlled
 /// Precision DVR", 2021.)
 #[derive(Clone, Copy, Debug, PartialEq, Type)]
 pub struct ExactCell {
@@ -128,23 +129,29 @@ struct Absorbed {
     place: f32,
 }
 
-/// Integrates the piece of a cubic from `from` on, `width` wide, within an interval; `length` is
-/// that of the whole cell in the world.
-#[kernel]
+/// Integrates the piece of a cubic from `from` on, `width` wide, between two knots, whose values and
+/// extinctions are given; `length` is that of the whole cell in the world.
+#[kernel(known = AbsorbedBy)]
 #[inline(always)]
 #[expect(clippy::excessive_precision, reason = "the reference in `f64` has all digits")]
-fn absorbed(cubic: Cubic, interval: Interval, from: f32, width: f32, length: f32) -> Absorbed {
-    let Interval { below, above, .. } = interval;
-    let per = 1.0 / (above.value - below.value);
+fn absorbed(
+    cubic: Cubic,
+    values: Vec2,
+    extinctions: Vec2,
+    from: f32,
+    width: f32,
+    length: f32,
+) -> Absorbed {
+    let per = 1.0 / (values.y - values.x);
     // Places between the knots, at Gauss's four points.
-    let pa = clamp((cubic.at(from + width * 0.069431844202973712) - below.value) * per, 0.0, 1.0);
-    let pb = clamp((cubic.at(from + width * 0.33000947820757187) - below.value) * per, 0.0, 1.0);
-    let pc = clamp((cubic.at(from + width * 0.66999052179242813) - below.value) * per, 0.0, 1.0);
-    let pd = clamp((cubic.at(from + width * 0.93056815579702629) - below.value) * per, 0.0, 1.0);
+    let pa = clamp((cubic.at(from + width * 0.069431844202973712) - values.x) * per, 0.0, 1.0);
+    let pb = clamp((cubic.at(from + width * 0.33000947820757187) - values.x) * per, 0.0, 1.0);
+    let pc = clamp((cubic.at(from + width * 0.66999052179242813) - values.x) * per, 0.0, 1.0);
+    let pd = clamp((cubic.at(from + width * 0.93056815579702629) - values.x) * per, 0.0, 1.0);
     // Extinctions there, times the length.
     let run = width * length;
-    let first = min(below.extinction * run, MOST_OPTICAL_DEPTH);
-    let more = min(above.extinction * run, MOST_OPTICAL_DEPTH) - first;
+    let first = min(extinctions.x * run, MOST_OPTICAL_DEPTH);
+    let more = min(extinctions.y * run, MOST_OPTICAL_DEPTH) - first;
     let (a, b, c, d) = (first + more * pa, first + more * pb, first + more * pc, first + more * pd);
     // Optical depths before each.
     let ta = a * 0.086963711284363464 - b * 0.026604180084998793 + c * 0.012627462689404725
@@ -168,6 +175,99 @@ fn absorbed(cubic: Cubic, interval: Interval, from: f32, width: f32, length: f32
         depth: (a + d) * 0.17392742256872693 + (b + c) * 0.32607257743127307,
         // Of a piece so thick that no point gets light, the beginning is seen.
         place: if sum > f32::MIN_POSITIVE { clamp(mean, 0.0, 1.0) } else { pa },
+    }
+}
+
+/// What [`absorbed()`] stands for: the integrals themselves.
+#[derive(Debug)]
+struct AbsorbedBy;
+
+/// Gauss's rule with eight points on -1 to 1: places and weights of the positive half.
+const GAUSS: [[f64; 2]; 4] = [
+    [0.183_434_642_495_649_8, 0.362_683_783_378_362],
+    [0.525_532_409_916_329, 0.313_706_645_877_887_3],
+    [0.796_666_477_413_626_7, 0.222_381_034_453_374_5],
+    [0.960_289_856_497_536_3, 0.101_228_536_290_376_3],
+];
+
+/// Parts of a piece to which that rule is applied.
+const PARTS: u32 = 4;
+
+/// Optical depth behind which nothing is seen: less than 1e-17 is transmitted.
+const OPAQUE: f64 = 40.0;
+
+impl KnownFunction for AbsorbedBy {
+    fn bound(&self, m: &Margin, args: &[Known]) -> Option<Vec<Known>> {
+        let [cubic @ .., below, above, first, last, from, width, length] = args else {
+            return None;
+        };
+        let [c0, c1, c2, c3] = cubic else { return None };
+        // The place between the knots, and the depth before, as polynomials of a share of the piece.
+        let (x, w) = (from.value, width.value);
+        let per = 1.0 / (above.value - below.value);
+        let p = [
+            (c0.value + x * (c1.value + x * (c2.value + x * c3.value)) - below.value) * per,
+            (c1.value + x * (2.0 * c2.value + x * (3.0 * c3.value))) * w * per,
+            (c2.value + x * (3.0 * c3.value)) * w * w * per,
+            c3.value * w * w * w * per,
+        ];
+        let place = |u: f64| p[0] + u * (p[1] + u * (p[2] + u * p[3]));
+        let most = f64::from(MOST_OPTICAL_DEPTH);
+        let run = w * length.value;
+        let begin = (first.value * run).min(most);
+        let more = (last.value * run).min(most) - begin;
+        let before = |u: f64| {
+            u * (begin + more * (p[0] + u * (p[1] / 2.0 + u * (p[2] / 3.0 + u * (p[3] / 4.0)))))
+        };
+        let depth = before(1.0);
+        // Behind the end no light is left.
+        let mut end = 1.0;
+        if depth > OPAQUE {
+            let mut low = 0.0;
+            for _ in 0..60 {
+                let middle = 0.5 * (low + end);
+                if before(middle) > OPAQUE { end = middle } else { low = middle }
+            }
+        }
+        // What is absorbed, and where on the mean.
+        let (mut sum, mut weighted) = (0.0, 0.0);
+        for part in 0..PARTS {
+            for (at, weight) in GAUSS.iter().flat_map(|[at, weight]| [(-at, weight), (*at, weight)])
+            {
+                let u = end * (f64::from(part) + 0.5 + 0.5 * at) / f64::from(PARTS);
+                let absorbed = weight * (begin + more * place(u)) * (-before(u)).exp();
+                sum += absorbed;
+                weighted += absorbed * place(u);
+            }
+        }
+        let mean = if sum > f64::MIN_POSITIVE { weighted / sum } else { place(0.0) };
+
+        // How far the values of any variant may be from these, as shares of the interval.
+        let rounding = 16.0 * m.rounding().sum;
+        let wide = |v: &Known| v.range.high - v.range.low;
+        let size = |v: &Known| v.range.magnitude();
+        let off: f64 =
+            cubic.iter().chain([below, above]).map(|v| wide(v) + rounding * size(v)).sum();
+        let steep = size(c1) + 2.0 * size(c2) + 3.0 * size(c3);
+        let gap = (above.value - below.value).abs() - wide(below) - wide(above);
+        let off = 2.0 * (off + steep * (wide(from) + wide(width))) / gap.max(0.0) + rounding;
+        // A gap of nothing says nothing.
+        let off = if off < 1.0 { off } else { 1.0 };
+        let ends = [place(0.0), place(1.0)].map(|p| p.clamp(0.0, 1.0));
+        let (low, high) = (ends[0].min(ends[1]) - off, ends[0].max(ends[1]) + off);
+        let long = size(width) * size(length);
+        let short = (width.range.low * length.range.low).max(0.0);
+        let thick = size(first).max(size(last));
+        let slack = thick * long * (off + rounding)
+            + (wide(first) + wide(last)) * long
+            + thick * (long - short);
+        let nan = args.iter().any(|v| v.range.nan || v.range.is_nan())
+            || !(depth.is_finite() && mean.is_finite() && slack.is_finite());
+        let range = |low: f64, high: f64| Range::new(low.max(0.0), high, nan);
+        Some(vec![
+            m.bounded(depth, range(depth - slack, depth + slack)),
+            m.bounded(mean.clamp(0.0, 1.0), range(low, high.min(1.0))),
+        ])
     }
 }
 
@@ -199,16 +299,18 @@ fn thin_width(cubic: Cubic, interval: Interval, from: f32, width: f32, length: f
 #[inline(always)]
 fn add_piece(layer: &mut Layer, cubic: Cubic, interval: Interval, from: f32, to: f32, length: f32) {
     let Interval { below, above, .. } = interval;
+    let (values, extinctions) =
+        (vec2(below.value, above.value), vec2(below.extinction, above.extinction));
     let mut x = from;
     let mut is_left = from < to;
     while is_left {
         let mut width = to - x;
-        let mut found = absorbed(cubic, interval, x, width, length);
+        let mut found = absorbed(cubic, values, extinctions, x, width, length);
         is_left = false;
         if found.depth > MOST_DEPTH && layer.transmittance > DARK {
             width = thin_width(cubic, interval, x, width, length);
             is_left = x + width < to;
-            found = absorbed(cubic, interval, x, width, length);
+            found = absorbed(cubic, values, extinctions, x, width, length);
         }
         let color = below.color + (above.color - below.color) * found.place;
         layer.add(color, -expm1(-found.depth), found.depth);
