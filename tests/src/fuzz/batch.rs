@@ -49,8 +49,8 @@ pub struct Report {
 impl Workshop {
     /// Asks cargo where the libraries of the test program `test` lie, in `target_folder`.
     ///
-    /// Libraries of the workspace are copied to `folder`, so that a build that happens during a
-    /// long run does not change them.
+    /// All of them are linked to from `folder`, or copied, so that a build that happens during a long run
+    /// does not change them: rustc looks for what they depend on in the same folder.
     ///
     /// # Panics
     ///
@@ -83,26 +83,26 @@ impl Workshop {
         let _ = fs::remove_dir_all(&copies);
         fs::create_dir_all(&copies).expect("a folder of the target folder can be made");
         let mut libraries = vec!["-L".to_owned(), format!("dependency={}", copies.display())];
-        let mut others = None;
         // The paths in cargo's messages are all that is wanted of them.
         for path in messages.split('"').map(Path::new) {
             let name = path.file_name().and_then(|n| n.to_str()).unwrap_or_default();
-            let is_library = name.starts_with("lib") && path.is_absolute() && path.exists();
             let is_rlib = name.ends_with(".rlib");
-            let is_own = name.starts_with("libraydsl");
-            if is_library && is_own && (is_rlib || name.ends_with(std::env::consts::DLL_SUFFIX)) {
-                let copy = copies.join(name);
+            let is_library = is_rlib || name.ends_with(std::env::consts::DLL_SUFFIX);
+            let copy = copies.join(name);
+            if !(is_library && name.starts_with("lib") && path.is_absolute() && path.exists())
+                || copy.exists()
+            {
+                continue;
+            }
+            // Cargo and rustc write another file in place of one, and leave this one as it is.
+            if fs::hard_link(path, &copy).is_err() {
                 fs::copy(path, &copy).expect("a library can be copied");
-                if let Some((krate, _)) = name.strip_prefix("lib").and_then(|n| n.split_once('-')) {
-                    libraries
-                        .extend(["--extern".to_owned(), format!("{krate}={}", copy.display())]);
-                }
-            } else if is_library && is_rlib {
-                others = path.parent().map(Path::to_owned);
+            }
+            let krate = name.strip_prefix("lib").and_then(|n| n.split_once('-')).map(|n| n.0);
+            if let Some(krate) = krate.filter(|krate| krate.starts_with("raydsl")) {
+                libraries.extend(["--extern".to_owned(), format!("{krate}={}", copy.display())]);
             }
         }
-        let others = others.expect("the libraries that do not belong to the workspace");
-        libraries.extend(["-L".to_owned(), format!("dependency={}", others.display())]);
         Self { folder: folder.to_owned(), libraries }
     }
 
@@ -142,23 +142,25 @@ impl Workshop {
         let folder = self.folder.join(format!("{name}-{:?}", std::thread::current().id()));
         fs::create_dir_all(&folder).expect("a folder of the target folder can be made");
         let mut report = Report { kernels: kernels.len(), ..Report::default() };
-        while let Err(errors) = self.compile(&folder, &kernels) {
-            let bad = bad_modules(&errors);
-            assert!(!bad.is_empty(), "rustc fails, for none of the kernels:\n{errors}");
-            let mut good = Vec::new();
-            for (i, kernel) in kernels.into_iter().enumerate() {
-                match bad.get(&i) {
-                    Some(error) => {
-                        let error = format!("does not compile: {error}");
-                        report.failures.push((kernel, error));
+        while !kernels.is_empty() {
+            while let Err(errors) = self.compile(&folder, &kernels) {
+                let bad = bad_modules(&errors);
+                assert!(!bad.is_empty(), "rustc fails, for none of the kernels:\n{errors}");
+                let mut good = Vec::new();
+                for (i, kernel) in kernels.into_iter().enumerate() {
+                    match bad.get(&i) {
+                        Some(error) => {
+                            let error = format!("does not compile: {error}");
+                            report.failures.push((kernel, error));
+                        }
+                        None => good.push(kernel),
                     }
-                    None => good.push(kernel),
                 }
+                kernels = good;
             }
-            kernels = good;
-        }
-        if !kernels.is_empty() {
-            run_program(&folder, &kernels, &mut report);
+            let Some(last) = run_program(&folder, &kernels, &mut report) else { break };
+            // Those behind the kernel that ended the program have not run.
+            kernels.drain(..=last);
         }
         let _ = fs::remove_dir_all(&folder);
         report
@@ -272,8 +274,9 @@ fn bad_modules(errors: &str) -> HashMap<usize, String> {
     bad
 }
 
-/// Runs a program and reads what it prints.
-fn run_program(folder: &Path, kernels: &[Kernel], report: &mut Report) {
+/// Runs a program and reads what it prints. Returns the kernel that ended it, if it did not run to its
+/// end.
+fn run_program(folder: &Path, kernels: &[Kernel], report: &mut Report) -> Option<usize> {
     let printed = folder.join("printed");
     let file = File::create(&printed).expect("a file of the target folder can be written");
     let errors = file.try_clone().expect("a file can be shared");
@@ -312,11 +315,13 @@ fn run_program(folder: &Path, kernels: &[Kernel], report: &mut Report) {
             done = true;
         }
     }
-    if !done {
-        let kernel = &kernels[last.unwrap_or(0)];
-        let tail: Vec<&str> = text.lines().rev().take(20).collect();
-        let tail: Vec<&str> = tail.into_iter().rev().collect();
-        let text = format!("the program ends at this kernel ({status}):\n{}", tail.join("\n"));
-        report.failures.push((kernel.clone(), text));
+    if done {
+        return None;
     }
+    let last = last.unwrap_or(0);
+    let tail: Vec<&str> = text.lines().rev().take(20).collect();
+    let tail: Vec<&str> = tail.into_iter().rev().collect();
+    let text = format!("the program ends at this kernel ({status}):\n{}", tail.join("\n"));
+    report.failures.push((kernels[last].clone(), text));
+    Some(last)
 }
