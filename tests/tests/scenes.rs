@@ -446,16 +446,19 @@ mod on_a_gpu {
 
     use super::{mesh, models, points, rays};
 
-    fn filled(gpu: &GpuScheduler, bytes: &[u8]) -> GpuWindow {
-        let size = bytes.len() as u64;
+    fn filled(gpu: &GpuScheduler, bytes: &[u8]) -> wgpu::Buffer {
         let buffer = gpu.context().device().create_buffer(&wgpu::BufferDescriptor {
             label: None,
-            size,
+            size: bytes.len() as u64,
             usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST,
             mapped_at_creation: false,
         });
         gpu.context().queue().write_buffer(&buffer, 0, bytes);
-        GpuWindow { buffer, offset: 0, size }
+        buffer
+    }
+
+    fn window(gpu: &GpuScheduler, bytes: &[u8]) -> GpuWindow {
+        GpuWindow { buffer: filled(gpu, bytes), offset: 0, size: bytes.len() as u64 }
     }
 
     /// Runs a kernel, and gives the bytes that were sent for it.
@@ -485,8 +488,11 @@ mod on_a_gpu {
         let any = kernel!(|ray: Ray| bvh.any_hit(ray));
         let gpu = GpuScheduler::new()?;
         {
+            let points_buffer = filled(&gpu, bytemuck::cast_slice(&points));
+            let size = size_of_val(&points[..]) as u64;
             // ANCHOR: window
-            let _window = gpu.with_gpu(&bvh, filled(&gpu, bytemuck::cast_slice(&points)))?;
+            let window = GpuWindow { buffer: points_buffer, offset: 0, size };
+            let _window = gpu.with_gpu(&bvh, window)?;
             // ANCHOR_END: window
             assert_eq!(sent(&gpu, &closest, &rays)?, own);
             assert_eq!(sent(&gpu, &any, &rays)?, 0);
@@ -506,8 +512,8 @@ mod on_a_gpu {
         let bvh = Bvh::build_sharing(&indexed, &vertices, &config).expect("finite bounds");
         let kernel = kernel!(|ray: Ray| bvh.closest_hit(ray));
         let gpu = GpuScheduler::new()?;
-        let _triangles = gpu.with_gpu(&bvh, filled(&gpu, bytemuck::cast_slice(&indexed)))?;
-        let own = filled(&gpu, bytemuck::cast_slice(&vertices));
+        let _triangles = gpu.with_gpu(&bvh, window(&gpu, bytemuck::cast_slice(&indexed)))?;
+        let own = window(&gpu, bytemuck::cast_slice(&vertices));
         let _vertices = gpu.with_gpu(bvh.view().shared(), own)?;
         assert_eq!(sent(&gpu, &kernel, &rays)?, bvh.bytes() as u64);
         Ok(())

@@ -192,7 +192,9 @@ impl fmt::Debug for OnGpu<'_> {
 
 impl GpuScheduler {
     /// Makes kernels that read `data` read `window` instead, as long as the result lives. Nothing
-    /// of the data is uploaded, except a tree's nodes and indices.
+    /// of the data is uploaded, except a tree's nodes and indices. Of a [wide
+    /// tree](crate::bvh::Bvh::build_wide) its leaves are uploaded too, which are copies of the
+    /// primitives: over data that is on the device build a binary tree.
     ///
     /// The window must hold the same data, in the same memory layout; this is not checked. The CPU
     /// variants still read the host's data. Another slice of the same elements, such as a part, is
