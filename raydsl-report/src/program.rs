@@ -36,6 +36,7 @@ pub struct Program {
 
 /// How large a program is.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct ProgramSize {
     /// Bytes of its text.
     pub wgsl_bytes: usize,
