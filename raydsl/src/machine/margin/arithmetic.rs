@@ -168,7 +168,13 @@ impl Margin {
     pub(super) fn binary(&self, op: F32Binary, a: Known, b: Known) -> Known {
         let (x, y) = (a.value, b.value);
         if let Some(exact) = self.exact(op, a, b) {
-            return self.point(exact);
+            return match op {
+                // Devices may ignore the sign of a zero, and fold what is multiplied by one.
+                F32Binary::Mul if exact == 0.0 && !self.rounding.is_strict => {
+                    self.bounded(exact, Interval::point(exact).with_any_zero())
+                }
+                _ => self.point(exact),
+            };
         }
         let same = a.id == b.id;
         let sum = self.rounding.sum();

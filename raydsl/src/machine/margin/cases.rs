@@ -32,6 +32,20 @@ fn zeros_of_either_sign_have_bits() {
     assert!(held(&sign, (1e-45, 5.769085)).is_complete());
 }
 
+/// Tests the sign of a zero that is the product of two known numbers: a device made 0 of `0 * x`,
+/// whatever `x` was. Strict arithmetic has the sign.
+#[test]
+fn the_sign_of_a_product_that_is_zero_is_open() {
+    let sign = kernel!(|x: f32, y: f32| (x * y).signum());
+    let found = sign.outcomes((0.0, -2.0), Rounding::WGSL, 64);
+    assert!(found.is_complete() && found.contains(1.0f32) && found.contains(-1.0f32));
+    let found = held(&sign, (0.0, -2.0));
+    assert!(found.contains(-1.0f32) && !found.contains(1.0f32));
+    // It is 0 all the same.
+    let is_zero = kernel!(|x: f32, y: f32| x * y == 0.0 && x * y + 3.0 == 3.0);
+    assert!(!is_zero.outcomes((0.0, -2.0), Rounding::WGSL, 64).is_uncertain());
+}
+
 #[test]
 fn the_sign_of_a_nan_is_open() {
     let sign = kernel!(|x: f32| 1.0f32.copysign(x / x));
