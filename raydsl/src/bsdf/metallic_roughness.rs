@@ -23,7 +23,7 @@ use crate::{Type, kernel};
 /// | clearcoat | [`Coated`] with index 1.5 on all of it |
 /// | sheen | [`SheenCoated`] on all of that |
 ///
-/// Emission is that of a [light](crate::light).
+/// Most of these lobes are not reciprocal. Emission is that of a [light](crate::light).
 #[derive(Clone, Copy, Debug, PartialEq, Type)]
 #[repr(C)]
 pub struct MetallicRoughness {

@@ -92,7 +92,7 @@ impl Bsdf for Sheen {
 }
 
 /// Sheen on any BSDF, which gets the light that the sheen does not reflect, by its directional
-/// albedo: cloth is `SheenCoated<Lambert>`.
+/// albedo: cloth is `SheenCoated<Lambert>`. That is not reciprocal.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Type)]
 pub struct SheenCoated<B: Bsdf + MachineType> {
     /// What is under the fibres.

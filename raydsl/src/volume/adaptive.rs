@@ -3,9 +3,9 @@
 use glam::Vec3;
 
 use super::along::{Passed, passed};
-use super::cubic::{Cubic, next_extreme};
+use super::cubic::{Cubic, Extremes, next_extreme};
 use super::grid::GridLayout;
-use super::integral::{MeanBetween, mean_between};
+use super::integral::{MeanBetween, TransferPlace, mean_of_places, place_at};
 use super::integrator::{
     Inside, Layer, VolumeIntegrator, inside, integrator, macro_walk, majorant_of,
 };
@@ -107,8 +107,8 @@ struct Part {
 /// Returns a part over the values from `a` to `b`, `run` long in the world.
 #[kernel]
 #[inline]
-fn part_of(function: &TransferFunction, a: f32, b: f32, run: f32) -> Part {
-    let MeanBetween { mean, from, to } = mean_between(function, a, b);
+fn part_of(function: &TransferFunction, a: TransferPlace, b: TransferPlace, run: f32) -> Part {
+    let MeanBetween { mean, from, to } = mean_of_places(function, a, b);
     let depth = mean.extinction * run;
     // What is absorbed is by so much of the part before its middle, with linear colours.
     let shift = min(depth * (1.0 / 12.0), 0.5);
@@ -123,7 +123,7 @@ fn part_of(function: &TransferFunction, a: f32, b: f32, run: f32) -> Part {
 fn tried(
     layer: Layer,
     function: &TransferFunction,
-    (a, between, b): (f32, f32, f32),
+    (a, between, b): (TransferPlace, TransferPlace, TransferPlace),
     run: f32,
     allowed: f32,
 ) -> Tried {
@@ -149,45 +149,86 @@ fn tried(
     found
 }
 
-/// Adds a cell, whose value is `cubic` over `length`; `width` is the length of the first step, and
-/// becomes that of the next. `allowed` is the error for the whole cell.
-#[kernel]
-#[inline]
-fn add_cell(
-    layer: &mut Layer,
-    width: &mut f32,
-    function: &TransferFunction,
+/// A cell on the way through it, step by step. Walks advance it in the same loop as their cells, so that
+/// rays of a packet do not wait in each cell for the one that takes the most steps there.
+#[derive(Clone, Copy, Debug, Type)]
+struct CellSteps {
+    /// The value along the ray.
     cubic: Cubic,
+    extremes: Extremes,
+    /// Length in the world.
     length: f32,
+    /// Error for the whole cell.
     allowed: f32,
-) {
-    let extremes = cubic.extremes();
-    let mut x = 0.0;
-    let mut value = cubic.c0;
-    let mut shortest = SHORTEST;
-    while x < 1.0 {
+    /// What is behind, from 0 to 1; the cell is through at 1.
+    x: f32,
+    /// The value there.
+    at: TransferPlace,
+    /// Share of the cell at which the next step is taken whatever its error, if it is thin.
+    shortest: f32,
+}
+
+#[kernel]
+impl CellSteps {
+    /// Returns a cell that is through.
+    #[inline(always)]
+    fn none(function: &TransferFunction) -> CellSteps {
+        CellSteps {
+            cubic: Cubic { c0: 0.0, c1: 0.0, c2: 0.0, c3: 0.0 },
+            extremes: Extremes { first: 2.0, second: 2.0 },
+            length: 0.0,
+            allowed: 0.0,
+            x: 1.0,
+            at: place_at(function, 0.0),
+            shortest: SHORTEST,
+        }
+    }
+
+    /// Returns a cell that the ray enters, whose value is `cubic` over `length`; `allowed` is the error
+    /// for all of it.
+    #[inline(always)]
+    fn of(function: &TransferFunction, cubic: Cubic, length: f32, allowed: f32) -> CellSteps {
+        CellSteps {
+            cubic,
+            extremes: cubic.extremes(),
+            length,
+            allowed,
+            x: 0.0,
+            at: place_at(function, cubic.c0),
+            shortest: SHORTEST,
+        }
+    }
+
+    /// Tries the next step; `width` is its length in the world, and becomes that of the one after it.
+    #[inline(always)]
+    fn advance(&mut self, layer: &mut Layer, width: &mut f32, function: &TransferFunction) {
+        let x = self.x;
         // The value is monotone up to the next extreme place.
-        let stop = next_extreme(extremes, x);
+        let stop = next_extreme(self.extremes, x);
         // A NaN, of a cell without length, becomes the shortest.
-        let share = max(shortest, min(*width / length, 1.0));
+        let share = max(self.shortest, min(*width / self.length, 1.0));
         let end = min(x + share, stop);
         let step = end - x;
-        let (between, last) = (cubic.at(x + step * DIVISION), cubic.at(end));
-        let limit = allowed * step / max(layer.transmittance, f32::MIN_POSITIVE);
-        let found = tried(*layer, function, (value, between, last), step * length, limit);
-        let next = step * length * found.factor;
+        let cubic: Cubic = self.cubic;
+        let before: TransferPlace = self.at;
+        let between = place_at(function, cubic.at(x + step * DIVISION));
+        let behind = place_at(function, cubic.at(end));
+        let (value, last) = (before.value, behind.value);
+        let limit = self.allowed * step / max(layer.transmittance, f32::MIN_POSITIVE);
+        let found = tried(*layer, function, (before, between, behind), step * self.length, limit);
+        let next = step * self.length * found.factor;
         let is_narrow = (last - value).abs() <= NARROWEST * max(last.abs(), value.abs());
         let least = if found.is_thick { SHORTEST_THICK } else { SHORTEST };
         if found.is_good | is_narrow | (share <= least) {
-            shortest = SHORTEST;
+            self.shortest = SHORTEST;
             *layer = found.layer;
-            x = end;
-            value = last;
+            self.x = end;
+            self.at = behind;
             // A step that the cell ended says nothing against longer ones.
             *width = if end == stop { max(*width, next) } else { next };
         } else {
             // Taken at its shortest, were it not thick.
-            shortest = if share <= SHORTEST { SHORTEST_THICK } else { SHORTEST };
+            self.shortest = if share <= SHORTEST { SHORTEST_THICK } else { SHORTEST };
             *width = next;
         }
     }
@@ -211,16 +252,23 @@ fn adaptive<T: Voxel>(
             let before = light.transmittance();
             let mut layer = Layer::new();
             let mut cells = walk.cells_of(layout.last_macro, layout.last_cell, -layout.low.floor());
-            while cells.is_inside && layer.transmittance * before >= this.least {
-                let (enter, leave) = (cells.enter, cells.leave);
-                let Passed { cubic, cell, .. } =
-                    passed(volume.grid(), part, cells.cell, enter, leave);
-                if cell.is_whole {
-                    let allowed = this.tolerance * ((leave - enter) / part.end) / before;
-                    let length = (leave - enter) * part.scale;
-                    add_cell(&mut layer, &mut width, volume.transfer(), cubic, length, allowed);
+            let mut steps = CellSteps::none(volume.transfer());
+            while steps.x < 1.0 || (cells.is_inside && layer.transmittance * before >= this.least) {
+                let is_in_cell = steps.x < 1.0;
+                if !is_in_cell {
+                    let (enter, leave) = (cells.enter, cells.leave);
+                    let Passed { cubic, cell, .. } =
+                        passed(volume.grid(), part, cells.cell, enter, leave);
+                    if cell.is_whole {
+                        let allowed = this.tolerance * ((leave - enter) / part.end) / before;
+                        let length = (leave - enter) * part.scale;
+                        steps = CellSteps::of(volume.transfer(), cubic, length, allowed);
+                    }
+                    cells.advance();
                 }
-                cells.advance();
+                if steps.x < 1.0 {
+                    steps.advance(&mut layer, &mut width, volume.transfer());
+                }
             }
             light = light.then(layer.radiance, layer.depth);
         }

@@ -1,6 +1,6 @@
 //! The exact cell: the integral over a trilinear cell, piece by piece.
 
-use super::cubic::{Cubic, next_extreme, place_of};
+use super::cubic::{Cubic, Extremes, next_extreme, place_of};
 use super::grid::GridLayout;
 use super::integrator::{
     Inside, Layer, VolumeIntegrator, inside, integrator, lambert, macro_walk, majorant_of,
@@ -11,13 +11,13 @@ use super::transfer::{TransferFunction, TransferKnot};
 use super::volume::{Volume, VolumeView};
 use super::voxel::{Corners, Voxel};
 use crate::geometry::{Ray, RayOn};
-use crate::machine::functions::{vec2, vec3};
+use crate::machine::functions::{vec2, vec3, vec4};
 use crate::machine::generic::{clamp, length, max, min};
 use crate::machine::margin::{Interval as Range, Known};
 use crate::machine::{KnownFunction, Machine, Margin, On};
 use crate::math::elementary::{exp, expm1};
 use crate::{Type, kernel};
-use glam::{Vec2, Vec3, vec2, vec3};
+use glam::{Vec2, Vec3, vec2, vec3, vec4};
 
 /// Integrates each cell of the grid exactly, whatever its optical depth: no step to choose.
 ///
@@ -119,6 +119,22 @@ pub(super) fn interval_at(function: &TransferFunction, index: u32) -> Interval {
     let below: TransferKnot = function.knot(index);
     let above: TransferKnot = function.knot(index + 1);
     Interval { index, below, above }
+}
+
+#[kernel]
+impl Interval {
+    /// Returns the interval above or below, with which it shares a knot.
+    #[inline(always)]
+    fn next(self, function: &TransferFunction, is_above: bool) -> Interval {
+        let (below, above): (TransferKnot, TransferKnot) = (self.below, self.above);
+        let index = if is_above { self.index + 1 } else { self.index - 1 };
+        let knot: TransferKnot = function.knot(if is_above { index + 1 } else { index });
+        Interval {
+            index,
+            below: if is_above { above } else { knot },
+            above: if is_above { knot } else { below },
+        }
+    }
 }
 
 /// What a piece of a cell within one interval absorbs.
@@ -294,64 +310,121 @@ fn thin_width(cubic: Cubic, interval: Interval, from: f32, width: f32, length: f
     max(min(2.0 * MOST_DEPTH / max(begin + root, 1e-30), width), 1e-6)
 }
 
-/// Adds the piece of a cell from `from` to `to`, within one interval.
-#[kernel]
-#[inline(always)]
-fn add_piece(layer: &mut Layer, cubic: Cubic, interval: Interval, from: f32, to: f32, length: f32) {
-    let Interval { below, above, .. } = interval;
-    let (values, extinctions) =
-        (vec2(below.value, above.value), vec2(below.extinction, above.extinction));
-    let mut x = from;
-    let mut is_left = from < to;
-    while is_left {
-        let mut width = to - x;
-        let mut found = absorbed(cubic, values, extinctions, x, width, length);
-        is_left = false;
-        if found.depth > MOST_DEPTH && layer.transmittance > DARK {
-            width = thin_width(cubic, interval, x, width, length);
-            is_left = x + width < to;
-            found = absorbed(cubic, values, extinctions, x, width, length);
-        }
-        let color = below.color + (above.color - below.color) * found.place;
-        layer.add(color, -expm1(-found.depth), found.depth);
-        x += width;
-    }
+/// A piece of a cell, within one interval, over which the value is monotone.
+#[derive(Clone, Copy, Debug, Type)]
+struct Piece {
+    /// Where it ends.
+    end: f32,
+    /// The value there.
+    last: f32,
+    /// Whether the value leaves the interval there, and which way.
+    crosses: bool,
+    is_rising: bool,
 }
 
-/// Adds a cell, whose value is `cubic` over `length`. `interval` is that of the value at which the
-/// ray enters, and becomes that of the value at which it leaves.
+/// Returns the piece that begins at `x`, where the value is `value`.
 #[kernel]
 #[inline(always)]
-pub(super) fn add_cell(
-    layer: &mut Layer,
-    interval: &mut Interval,
-    function: &TransferFunction,
+fn piece_from(cubic: Cubic, extremes: Extremes, interval: Interval, x: f32, value: f32) -> Piece {
+    // The value is monotone up to the next extreme place.
+    let stop = next_extreme(extremes, x);
+    let at_stop = cubic.at(stop);
+    let is_rising = at_stop > value;
+    let bound = if is_rising { interval.above.value } else { interval.below.value };
+    let crosses = if is_rising { at_stop > bound } else { at_stop < bound };
+    let is_behind = if is_rising { value >= bound } else { value <= bound };
+    let mut end = stop;
+    if crosses {
+        end = if is_behind { x } else { min(max(place_of(cubic, bound, x, stop), x), stop) };
+    }
+    Piece { end, last: if crosses { bound } else { at_stop }, crosses, is_rising }
+}
+
+/// A cell on the way through it, piece by piece.
+///
+/// Walks advance it in the same loop as their cells: were it a loop of its own, all rays of a packet
+/// would wait in each cell for the one that meets the most knots there.
+#[derive(Clone, Copy, Debug, Type)]
+pub(super) struct CellPieces {
+    /// The value along the ray.
     cubic: Cubic,
+    extremes: Extremes,
+    /// Length in the world.
     length: f32,
-) {
-    let extremes = cubic.extremes();
-    let mut x = 0.0;
-    let mut value = cubic.c0;
-    while x < 1.0 {
-        // The value is monotone up to the next extreme place.
-        let stop = next_extreme(extremes, x);
-        let at_stop = cubic.at(stop);
-        let is_rising = at_stop > value;
-        let bound = if is_rising { interval.above.value } else { interval.below.value };
-        let crosses = if is_rising { at_stop > bound } else { at_stop < bound };
-        let is_behind = if is_rising { value >= bound } else { value <= bound };
-        let mut end = stop;
-        if crosses {
-            end = if is_behind { x } else { min(max(place_of(cubic, bound, x, stop), x), stop) };
+    /// What is behind, from 0 to 1; the cell is through at 1.
+    pub(super) x: f32,
+    /// The value there.
+    value: f32,
+    piece: Piece,
+    /// Whether part of the piece is behind.
+    is_begun: bool,
+}
+
+#[kernel]
+impl CellPieces {
+    /// Returns a cell that is through.
+    #[inline(always)]
+    pub(super) fn none() -> CellPieces {
+        CellPieces {
+            cubic: Cubic { c0: 0.0, c1: 0.0, c2: 0.0, c3: 0.0 },
+            extremes: Extremes { first: 2.0, second: 2.0 },
+            length: 0.0,
+            x: 1.0,
+            value: 0.0,
+            piece: Piece { end: 1.0, last: 0.0, crosses: false, is_rising: false },
+            is_begun: false,
         }
-        if interval.below.extinction + interval.above.extinction > 0.0 {
-            add_piece(&mut *layer, cubic, *interval, x, end, length);
+    }
+
+    /// Returns a cell that the ray enters, whose value is `cubic` over `length`.
+    #[inline(always)]
+    pub(super) fn of(cubic: Cubic, length: f32) -> CellPieces {
+        CellPieces {
+            cubic,
+            extremes: cubic.extremes(),
+            length,
+            x: 0.0,
+            value: cubic.c0,
+            piece: Piece { end: 0.0, last: 0.0, crosses: false, is_rising: false },
+            is_begun: false,
         }
-        x = end;
-        value = if crosses { bound } else { at_stop };
-        if crosses {
-            let index = interval.index;
-            *interval = interval_at(function, if is_rising { index + 1 } else { index - 1 });
+    }
+
+    /// Adds the next piece, or, of a thick one, its next part. `interval` is that of the value, and
+    /// becomes that of the value behind it.
+    #[inline(always)]
+    pub(super) fn advance(
+        &mut self,
+        layer: &mut Layer,
+        interval: &mut Interval,
+        function: &TransferFunction,
+    ) {
+        if !self.is_begun {
+            self.piece = piece_from(self.cubic, self.extremes, *interval, self.x, self.value);
+        }
+        let piece: Piece = self.piece;
+        self.is_begun = false;
+        let Interval { below, above, .. } = *interval;
+        if below.extinction + above.extinction > 0.0 && self.x < piece.end {
+            let (values, extinctions) =
+                (vec2(below.value, above.value), vec2(below.extinction, above.extinction));
+            let mut width = piece.end - self.x;
+            let mut found = absorbed(self.cubic, values, extinctions, self.x, width, self.length);
+            if found.depth > MOST_DEPTH && layer.transmittance > DARK {
+                width = thin_width(self.cubic, *interval, self.x, width, self.length);
+                self.is_begun = self.x + width < piece.end;
+                found = absorbed(self.cubic, values, extinctions, self.x, width, self.length);
+            }
+            let color = below.color + (above.color - below.color) * found.place;
+            layer.add(color, -expm1(-found.depth), found.depth);
+            self.x += width;
+        }
+        if !self.is_begun {
+            self.x = piece.end;
+            self.value = piece.last;
+            if piece.crosses {
+                *interval = interval.next(function, piece.is_rising);
+            }
         }
     }
 }
@@ -386,34 +459,47 @@ fn through_cells<T: Voxel, F: Fn(InCell) -> f32>(
     let (zero, one) = (vec3(0.0, 0.0, 0.0), vec3(1.0, 1.0, 1.0));
     let mut light = light;
     let mut interval = interval_at(volume.transfer(), 0u32);
+    let corners = Corners { near: vec4(0.0, 0.0, 0.0, 0.0), far: vec4(0.0, 0.0, 0.0, 0.0) };
     let mut walk = macro_walk(volume.grid(), part);
     while walk.is_inside && light.transmittance() >= least {
         if majorant_of(volume, walk.cell) > 0.0 {
             let enough = least / light.transmittance();
             let mut layer = Layer::new();
             let mut cells = walk.cells_of(layout.last_macro, layout.last_cell, -layout.low.floor());
-            while cells.is_inside && layer.transmittance >= enough {
-                let cell = clamp(cells.cell, zero, layout.last_cell);
-                let found = cell_at(volume.grid(), cell);
-                if found.is_whole && !is_clear(found.corners, interval, layout) {
-                    let from = part.origin + part.direction * cells.enter - cell;
-                    let to = part.origin + part.direction * cells.leave - cell;
-                    let (from, to) = (clamp(from, zero, one), clamp(to, zero, one));
-                    let cubic = Cubic::through(found.corners, from, to);
-                    let cubic = cubic.rescaled(layout.scale, layout.offset);
-                    let length = (cells.leave - cells.enter) * part.scale;
-                    if cubic.c0 < interval.below.value || cubic.c0 > interval.above.value {
-                        let index: u32 = volume.transfer().interval(cubic.c0);
-                        interval = interval_at(volume.transfer(), index);
+            let mut pieces = CellPieces::none();
+            let (mut radiance, mut depth) = (layer.radiance, layer.depth);
+            let mut seen = InCell { corners, place: zero, is_whole: false };
+            while pieces.x < 1.0 || (cells.is_inside && layer.transmittance >= enough) {
+                let is_in_cell = pieces.x < 1.0;
+                if !is_in_cell {
+                    let cell = clamp(cells.cell, zero, layout.last_cell);
+                    let found = cell_at(volume.grid(), cell);
+                    if found.is_whole && !is_clear(found.corners, interval, layout) {
+                        let from = part.origin + part.direction * cells.enter - cell;
+                        let to = part.origin + part.direction * cells.leave - cell;
+                        let (from, to) = (clamp(from, zero, one), clamp(to, zero, one));
+                        let cubic = Cubic::through(found.corners, from, to);
+                        let cubic = cubic.rescaled(layout.scale, layout.offset);
+                        let length = (cells.leave - cells.enter) * part.scale;
+                        if cubic.c0 < interval.below.value || cubic.c0 > interval.above.value {
+                            let index: u32 = volume.transfer().interval(cubic.c0);
+                            interval = interval_at(volume.transfer(), index);
+                        }
+                        pieces = CellPieces::of(cubic, length);
+                        radiance = layer.radiance;
+                        depth = layer.depth;
+                        seen = InCell { place: (from + to) * 0.5, ..found };
                     }
-                    let (radiance, depth) = (layer.radiance, layer.depth);
-                    add_cell(&mut layer, &mut interval, volume.transfer(), cubic, length);
-                    if layer.depth > depth {
-                        let factor = shade(InCell { place: (from + to) * 0.5, ..found });
+                    cells.advance();
+                }
+                if pieces.x < 1.0 {
+                    pieces.advance(&mut layer, &mut interval, volume.transfer());
+                    let is_in_cell = pieces.x < 1.0;
+                    if !is_in_cell && layer.depth > depth {
+                        let factor = shade(seen);
                         layer.radiance = radiance + (layer.radiance - radiance) * factor;
                     }
                 }
-                cells.advance();
             }
             light = light.then(layer.radiance, layer.depth);
         }

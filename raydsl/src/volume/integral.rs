@@ -2,7 +2,7 @@
 
 use glam::{DVec3, Vec3, vec3};
 
-use super::transfer::{TransferFunction, TransferKnot, TransferSample, sample_in};
+use super::transfer::{TransferFunction, TransferKnot, TransferSample, sample_between};
 use crate::machine::functions::vec3;
 use crate::machine::generic::{max, min};
 use crate::{Type, kernel};
@@ -71,30 +71,63 @@ pub(super) struct MeanBetween {
     pub(super) to: Vec3,
 }
 
+/// A value of the field, and what a function has there.
+#[derive(Clone, Copy, Debug, Type)]
+pub(super) struct TransferPlace {
+    pub(super) value: f32,
+    /// The interval, and the knots at its ends.
+    interval: u32,
+    below: TransferKnot,
+    above: TransferKnot,
+    sample: TransferSample,
+}
+
+/// Looks a value up.
+#[kernel]
+#[inline]
+pub(super) fn place_at(function: &TransferFunction, value: f32) -> TransferPlace {
+    let interval: u32 = function.interval(value);
+    let below: TransferKnot = function.knot(interval);
+    let above: TransferKnot = function.knot(interval + 1);
+    let sample = sample_between(below, above, value);
+    TransferPlace { value, interval, below, above, sample }
+}
+
 /// Returns the mean over all values between two, each as frequent as any other: pre-integration
 /// without absorption within. (Engel, Kraus and Ertl, "High-Quality Pre-Integrated Volume Rendering
 /// Using Hardware-Accelerated Pixel Shading", 2001, section 3.3; there it is a table.)
 #[kernel]
 #[inline]
-pub(super) fn mean_between(function: &TransferFunction, a: f32, b: f32) -> MeanBetween {
-    let (low, high) = (min(a, b), max(a, b));
-    let i: u32 = function.interval(low);
-    let j: u32 = function.interval(high);
-    let from: TransferSample = sample_in(function, i, low);
-    let to: TransferSample = sample_in(function, j, high);
+pub(super) fn mean_between(function: &TransferFunction, a: f32, b: f32) -> TransferSample {
+    let (low, high) = (place_at(function, min(a, b)), place_at(function, max(a, b)));
+    mean_of_places(function, low, high).mean
+}
+
+/// Returns the mean over the values between two.
+#[kernel]
+#[inline]
+pub(super) fn mean_of_places(
+    function: &TransferFunction,
+    a: TransferPlace,
+    b: TransferPlace,
+) -> MeanBetween {
+    let is_falling = b.value < a.value;
+    let (low, high) = (if is_falling { b } else { a }, if is_falling { a } else { b });
+    let (i, j) = (low.interval, high.interval);
+    let (from, to): (TransferSample, TransferSample) = (low.sample, high.sample);
     let mut mean = mean_of(from, to);
     if i < j {
         // Parts of the outer intervals, and the whole ones between them.
-        let (above, below) = (function.knot(i + 1), function.knot(j));
+        let (above, below): (TransferKnot, TransferKnot) = (low.above, high.below);
         let first = mean_of(from, end_of(above));
         let last = mean_of(end_of(below), to);
         let (begin, end) = (function.integral(i + 1), function.integral(j));
-        let per = 1.0 / max(high - low, f32::MIN_POSITIVE);
+        let per = 1.0 / max(high.value - low.value, f32::MIN_POSITIVE);
         let depths = vec3(
-            first.extinction * ((above.value - low) * per),
+            first.extinction * ((above.value - low.value) * per),
             ((end.extinction - begin.extinction) + (end.extinction_rest - begin.extinction_rest))
                 * per,
-            last.extinction * ((high - below.value) * per),
+            last.extinction * ((high.value - below.value) * per),
         );
         let inner = (end.emission - begin.emission) + (end.emission_rest - begin.emission_rest);
         let sum = depths.x + depths.y + depths.z;

@@ -2,6 +2,7 @@
 
 use glam::Vec3;
 
+use super::integral::{TransferPlace, mean_of_places, place_at};
 use super::integrator::{
     Inside, Layer, VolumeIntegrator, inside, integrator, macro_walk, majorant_of,
 };
@@ -38,11 +39,11 @@ const MOST_OPACITY: f32 = 1.0 - f32::EPSILON;
 #[inline(always)]
 fn where_whole<T: Voxel>(
     volume: &Volume<'_, T>,
-    cell: InCell,
+    is_whole: bool,
     sample: TransferSample,
 ) -> TransferSample {
     if volume.grid().has_gaps() {
-        let extinction = if cell.is_whole { sample.extinction } else { 0.0 };
+        let extinction = if is_whole { sample.extinction } else { 0.0 };
         TransferSample { extinction, ..sample }
     } else {
         sample
@@ -62,7 +63,7 @@ pub(super) fn cell_at_distance<T: Voxel>(volume: &Volume<'_, T>, part: Inside, t
 pub(super) fn sample_at<T: Voxel>(volume: &Volume<'_, T>, part: Inside, t: f32) -> TransferSample {
     let cell = cell_at_distance(volume, part, t);
     let sample: TransferSample = volume.transfer().at(value_in(volume.grid(), cell));
-    where_whole(volume, cell, sample)
+    where_whole(volume, cell.is_whole, sample)
 }
 
 /// Returns colour and extinction at a distance; black where there is no extinction.
@@ -71,7 +72,7 @@ pub(super) fn sample_at<T: Voxel>(volume: &Volume<'_, T>, part: Inside, t: f32) 
 fn seen_at<T: Voxel>(volume: &Volume<'_, T>, part: Inside, t: f32) -> TransferSample {
     let cell = cell_at_distance(volume, part, t);
     let sample = seen_sample_of(volume.transfer(), value_in(volume.grid(), cell));
-    where_whole(volume, cell, sample)
+    where_whole(volume, cell.is_whole, sample)
 }
 
 /// Returns extinction at a distance.
@@ -93,7 +94,8 @@ pub(super) fn opacity_of(depth: f32) -> f32 {
 }
 
 /// Defines the kernel of an integrator by its rule, which makes of the distances at which a step
-/// begins and ends what the step adds.
+/// begins and ends what the step adds. A rule of both ends keeps what it found at the last one: `$last`
+/// is first `$first`, at the distance `$from`, and the rule sets it.
 ///
 /// The kernel sums steps of equal length, at most `step` in the world, which tile the part of the
 /// ray in the grid; it skips macro-cells without extinction, and ends where less than `least` is
@@ -102,7 +104,8 @@ pub(super) fn opacity_of(depth: f32) -> f32 {
 macro_rules! march {
     (
         $name:ident by $kernel:ident in $of:ident,
-        |$this:ident, $volume:ident, $part:ident, $from:ident, $to:ident| $rule:expr
+        |$this:ident, $volume:ident, $part:ident, $from:ident, $to:ident $(, $last:ident = ($first:expr))?|
+            $rule:expr
     ) => {
         #[kernel]
         #[inline(never)]
@@ -137,6 +140,10 @@ macro_rules! march {
                     let end = min(leave / width, count).ceil() as u32;
                     let enough = $this.least / light.transmittance();
                     let mut layer = Layer::new();
+                    $(
+                        let $from = i as f32 * width;
+                        let mut $last = $first;
+                    )?
                     while i < end && layer.transmittance >= enough {
                         let ($from, $to) = (i as f32 * width, (i + 1) as f32 * width);
                         let found = $rule;
@@ -157,7 +164,8 @@ pub(super) use march;
 macro_rules! rule {
     (
         $(#[$doc:meta])*
-        $name:ident by $kernel:ident, |$volume:ident, $part:ident, $from:ident, $to:ident| $rule:expr
+        $name:ident by $kernel:ident,
+        |$volume:ident, $part:ident, $from:ident, $to:ident $(, $last:ident = ($first:expr))?| $rule:expr
     ) => {
         $(#[$doc])*
         #[derive(Clone, Copy, Debug, PartialEq, Type)]
@@ -187,7 +195,10 @@ macro_rules! rule {
         }
 
         integrator!($name, $kernel);
-        march!($name by $kernel in Volume, |this, $volume, $part, $from, $to| $rule);
+        march! {
+            $name by $kernel in Volume,
+            |this, $volume, $part, $from, $to $(, $last = ($first))?| $rule
+        }
     };
 }
 
@@ -238,38 +249,50 @@ fn mean_place(depth: f32) -> f32 {
 
 rule! {
     /// Steps with the mean extinction of both ends, and a colour that is linear between them:
-    /// second order, and right where extinction is constant. Two samples a step.
-    MeanExtinction by mean_extinction, |volume, part, from, to| {
-        let a = sample_at(volume, part, from);
-        let b = sample_at(volume, part, to);
+    /// second order, and right where extinction is constant. One sample a step: steps share ends.
+    MeanExtinction by mean_extinction, |volume, part, from, to, last = (sample_at(volume, part, from))| {
+        let (a, b) = (last, sample_at(volume, part, to));
+        last = b;
         let depth = (a.extinction + b.extinction) * 0.5 * ((to - from) * part.scale);
         let color = a.color + (b.color - a.color) * mean_place(depth);
         Step { color, opacity: opacity_of(depth), depth }
     }
 }
 
-/// Returns the mean colour and extinction between the values at two distances; without extinction
-/// where voxels are missing at either.
+/// An end of a step.
+#[derive(Clone, Copy, Debug, Type)]
+struct StepEnd {
+    at: TransferPlace,
+    is_whole: bool,
+}
+
+/// Returns what is at a distance.
 #[kernel]
 #[inline]
-fn mean_on_step<T: Voxel>(
-    volume: &Volume<'_, T>,
-    part: Inside,
-    from: f32,
-    to: f32,
-) -> TransferSample {
-    let a = cell_at_distance(volume, part, from);
-    let b = cell_at_distance(volume, part, to);
-    let values = (value_in(volume.grid(), a), value_in(volume.grid(), b));
-    let mean: TransferSample = volume.transfer().between(values.0, values.1);
-    where_whole(volume, InCell { is_whole: a.is_whole & b.is_whole, ..a }, mean)
+fn end_at<T: Voxel>(volume: &Volume<'_, T>, part: Inside, t: f32) -> StepEnd {
+    let cell = cell_at_distance(volume, part, t);
+    let mut value = value_in(volume.grid(), cell);
+    if volume.grid().has_gaps() {
+        // What is missing has no place.
+        value = if cell.is_whole { value } else { 0.0 };
+    }
+    StepEnd { at: place_at(volume.transfer(), value), is_whole: cell.is_whole }
+}
+
+/// Returns the mean colour and extinction between two ends; without extinction where voxels are missing
+/// at either.
+#[kernel]
+#[inline]
+fn mean_on_step<T: Voxel>(volume: &Volume<'_, T>, a: StepEnd, b: StepEnd) -> TransferSample {
+    let mean: TransferSample = mean_of_places(volume.transfer(), a.at, b.at).mean;
+    where_whole(volume, a.is_whole & b.is_whole, mean)
 }
 
 rule! {
     /// Steps with the means of colour and extinction over all values between those at both ends, so
     /// that no peak of the transfer function falls between two samples: pre-integration. Second
     /// order; absorption within a step is left out of its colour, so steps are to be thin where
-    /// colours change. Two samples a step.
+    /// colours change. One sample a step: steps share ends.
     ///
     /// The means are those of the function itself, [`TransferFunction::between`], and not of a
     /// table of pairs of values: there is no error of interpolation, and another function costs
@@ -277,8 +300,10 @@ rule! {
     /// Hardware-Accelerated Pixel Shading", 2001.)
     ///
     /// [`TransferFunction::between`]: super::TransferFunction::between
-    PreIntegrated by pre_integrated, |volume, part, from, to| {
-        let mean = mean_on_step(volume, part, from, to);
+    PreIntegrated by pre_integrated, |volume, part, from, to, last = (end_at(volume, part, from))| {
+        let end = end_at(volume, part, to);
+        let mean = mean_on_step(volume, last, end);
+        last = end;
         let depth = mean.extinction * ((to - from) * part.scale);
         Step { color: mean.color, opacity: opacity_of(depth), depth }
     }

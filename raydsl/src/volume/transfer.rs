@@ -469,7 +469,7 @@ impl TransferFunction {
     /// rounding, but for some 2^-48 of the function's whole integral, over the values' difference.
     #[inline]
     pub fn between(&self, a: f32, b: f32) -> TransferSample {
-        mean_between(self, a, b).mean
+        mean_between(self, a, b)
     }
 }
 
@@ -519,7 +519,7 @@ impl<M: Machine> Method<{ name("between") }, M, (F<M>, F<M>)> for TransferView<'
 
     #[inline(always)]
     fn call(self, m: &M, (a, b): (F<M>, F<M>)) -> Self::Output {
-        mean_between::on(m, self, a, b).mean
+        mean_between::on(m, self, a, b)
     }
 }
 
@@ -619,15 +619,13 @@ pub(super) fn share_of(value: f32, from: f32, to: f32) -> f32 {
 #[inline(always)]
 fn sample_of(function: &TransferFunction, value: f32) -> TransferSample {
     let i: u32 = function.interval(value);
-    sample_in(function, i, value)
+    sample_between(function.knot(i), function.knot(i + 1), value)
 }
 
-/// Returns colour and extinction of a value in this interval.
+/// Returns colour and extinction of a value between two knots.
 #[kernel]
 #[inline]
-pub(super) fn sample_in(function: &TransferFunction, i: u32, value: f32) -> TransferSample {
-    let a: TransferKnot = function.knot(i);
-    let b: TransferKnot = function.knot(i + 1);
+pub(super) fn sample_between(a: TransferKnot, b: TransferKnot, value: f32) -> TransferSample {
     let share = share_of(value, a.value, b.value);
     let extinction = a.extinction + (b.extinction - a.extinction) * share;
     TransferSample { color: a.color + (b.color - a.color) * share, extinction }

@@ -8,7 +8,7 @@ use crate::geometry::{Ray, RayOn};
 use crate::machine::generic::max;
 use crate::machine::{Machine, On};
 use crate::volume::cubic::Cubic;
-use crate::volume::exact::{Interval, add_cell, interval_at};
+use crate::volume::exact::{CellPieces, Interval, interval_at};
 use crate::volume::integrator::Layer;
 use crate::volume::{ExactCell, ShadedCell, VolumeLight};
 use crate::{Type, kernel};
@@ -104,12 +104,15 @@ fn through_cells<F: Fn(u32) -> f32>(
                 if is_there && !is_clear(part, interval) {
                     let length = (part.leave - part.enter) * line.scale;
                     let cubic = Cubic { c0: part.from, c1: part.to - part.from, c2: 0.0, c3: 0.0 };
+                    let (radiance, depth) = (layer.radiance, layer.depth);
                     if cubic.c0 < interval.below.value || cubic.c0 > interval.above.value {
                         let index: u32 = volume.transfer().interval(cubic.c0);
                         interval = interval_at(volume.transfer(), index);
                     }
-                    let (radiance, depth) = (layer.radiance, layer.depth);
-                    add_cell(&mut layer, &mut interval, volume.transfer(), cubic, length);
+                    let mut pieces = CellPieces::of(cubic, length);
+                    while pieces.x < 1.0 {
+                        pieces.advance(&mut layer, &mut interval, volume.transfer());
+                    }
                     if layer.depth > depth {
                         let factor = shade(walk.tetrahedron);
                         layer.radiance = radiance + (layer.radiance - radiance) * factor;
