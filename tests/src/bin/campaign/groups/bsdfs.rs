@@ -4,8 +4,8 @@ use std::f64::consts::PI;
 use std::sync::atomic::{AtomicU32, Ordering};
 
 use raydsl::bsdf::{
-    Bsdf, Coated, Conductor, Dielectric, Eon, F82, FresnelSplit, Lambert, Sheen,
-    fresnel_dielectric, ggx_distribution,
+    Bsdf, Coated, Conductor, Dielectric, Eon, F82, FresnelSplit, Lambert, MetallicRoughness,
+    Mirror, Mix, Sheen, SheenCoated, ThinDielectric, fresnel_dielectric, ggx_distribution,
 };
 use raydsl::prelude::*;
 use raydsl::sampling::{ONE_MINUS_EPSILON, pcg4d, scrambled_sobol_1d, scrambled_sobol_2d};
@@ -33,7 +33,8 @@ pub(crate) const GROUP: Group = Group {
 
 fn rows() -> Vec<Row> {
     let furnaces = MODELS.into_iter().map(furnace);
-    let reciprocal = MODELS.into_iter().map(reciprocity);
+    // A mirror has no value for two directions.
+    let reciprocal = MODELS.into_iter().filter(|m| m.name != "Mirror").map(reciprocity);
     let formulas = [ggx(), transmitted("transmitted, from outside", from_outside)];
     let inside = transmitted("transmitted, from inside", from_inside);
     formulas.into_iter().chain([inside]).chain(furnaces).chain(reciprocal).collect()
@@ -160,13 +161,20 @@ struct Model {
 
 const ROUGH: [f32; 5] = [0.0, 0.01, 0.1, 0.5, 1.0];
 
-const MODELS: [Model; 6] = [
+const FIBRES: [f32; 5] = [0.07, 0.1, 0.3, 0.6, 1.0];
+
+const MODELS: [Model; 11] = [
     Model { name: "Lambert", which: 0, alphas: ROUGH, ior: 1.0 },
     Model { name: "Eon", which: 1, alphas: ROUGH, ior: 1.0 },
     Model { name: "Dielectric", which: 2, alphas: ROUGH, ior: 1.5 },
-    Model { name: "Sheen", which: 3, alphas: [0.07, 0.1, 0.3, 0.6, 1.0], ior: 1.0 },
+    Model { name: "Sheen", which: 3, alphas: FIBRES, ior: 1.0 },
     Model { name: "Conductor", which: 4, alphas: ROUGH, ior: 1.0 },
     Model { name: "Coated Lambert", which: 5, alphas: ROUGH, ior: 1.0 },
+    Model { name: "Mirror", which: 6, alphas: ROUGH, ior: 1.0 },
+    Model { name: "ThinDielectric", which: 7, alphas: ROUGH, ior: 1.0 },
+    Model { name: "Mix", which: 8, alphas: ROUGH, ior: 1.0 },
+    Model { name: "SheenCoated Eon", which: 9, alphas: FIBRES, ior: 1.0 },
+    Model { name: "MetallicRoughness", which: 10, alphas: ROUGH, ior: 1.0 },
 ];
 
 /// What a BSDF makes of a pair of directions and of a sample.
@@ -204,10 +212,42 @@ fn scattered(which: u32, alpha: f32, wo: Vec3, wi: Vec3, u: Vec3, series: u32) -
         2 => asked::<Dielectric>(Dielectric { ior: 1.5, alpha, tint: white }, wo, wi, u, series),
         3 => asked::<Sheen>(Sheen { color: white, alpha }, wo, wi, u, series),
         4 => asked::<Conductor<F82>>(Conductor::<F82> { fresnel: metal, alpha }, wo, wi, u, series),
-        _ => {
+        5 => {
             let base = Lambert { color: white };
             let coated = Coated::<Lambert> { base, ior: 1.5, alpha, strength: white };
             asked::<Coated<Lambert>>(coated, wo, wi, u, series)
+        }
+        6 => asked::<Mirror>(Mirror { color: white }, wo, wi, u, series),
+        7 => {
+            let pane = ThinDielectric { ior: 1.5, alpha, tint: white };
+            asked::<ThinDielectric>(pane, wo, wi, u, series)
+        }
+        8 => {
+            let under = Eon { color: white, roughness: alpha };
+            let mix = Mix::<Eon, Lambert> { under, over: Lambert { color: white }, share: 0.3 };
+            asked::<Mix<Eon, Lambert>>(mix, wo, wi, u, series)
+        }
+        9 => {
+            let (base, sheen) =
+                (Eon { color: white, roughness: alpha }, Sheen { color: white, alpha });
+            asked::<SheenCoated<Eon>>(SheenCoated::<Eon> { base, sheen }, wo, wi, u, series)
+        }
+        _ => {
+            // Some of everything.
+            let all = MetallicRoughness {
+                base_color: white,
+                metallic: 0.3,
+                roughness: alpha,
+                ior: 1.5,
+                specular: white,
+                transmission: 0.4,
+                is_solid: false,
+                clearcoat: 0.5,
+                clearcoat_roughness: 0.5 * alpha,
+                sheen_color: vec3(0.5, 0.5, 0.5),
+                sheen_roughness: alpha,
+            };
+            asked::<MetallicRoughness>(all, wo, wi, u, series)
         }
     }
 }
@@ -319,7 +359,8 @@ fn reciprocity(model: Model) -> Row {
         })
     });
     match model.name {
-        "Conductor" | "Coated Lambert" => row.misses(
+        "Conductor" | "Coated Lambert" | "ThinDielectric" | "SheenCoated Eon"
+        | "MetallicRoughness" => row.misses(
             Bound::all(1.0),
             "As documented: light that is scattered several times is added by a factor of the viewer's \
              direction alone (Turquin 2019).",

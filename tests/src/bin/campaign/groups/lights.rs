@@ -6,8 +6,8 @@ use raydsl::bsdf::{Lambert, Luminous};
 use raydsl::geometry::Aabb;
 use raydsl::integrators::{PathLimits, path};
 use raydsl::light::{
-    AnyLight, AreaLight, DiskShape, Environment, Light, LightShape, Lights, RectangleShape,
-    SphereShape,
+    AnyLight, AreaLight, DiskShape, Environment, Light, LightShape, Lights, PointLight,
+    RectangleShape, SphereShape, SpotLight,
 };
 use raydsl::prelude::*;
 use raydsl::{Type, kernel};
@@ -30,6 +30,8 @@ pub(crate) const GROUP: Group = Group {
          standard errors.",
         "Cones are right to 4e-7 of themselves at any angle.",
         "Roulette changes no mean: it is right to 1e-5 beyond 4.5 standard errors.",
+        "The lights of a tree are chosen with the probability that each is told, to 1e-5 of it, and \
+         these add up to 1 to 1e-5, wherever they are asked from.",
     ],
     rows,
 };
@@ -62,6 +64,7 @@ fn rows() -> Vec<Row> {
         cone("cones: height", |found, s| (found.height, s * s / (1.0 + (1.0 - s * s).sqrt()))),
         cone("cones: rim", |found, s| (found.rim, s)),
         roulette(),
+        choices(),
     ]
 }
 
@@ -249,4 +252,82 @@ fn roulette() -> Row {
         Ok(all)
     })
     .share(0.1)
+}
+
+/// Lights of every kind, large and small, bright and dim, close together and far apart.
+fn many_lights(rng: &mut Source) -> Vec<AnyLight> {
+    let mut light = |i: usize| {
+        let reach = 10f32.powf(rng.range(-3.0, 3.0));
+        let position = rng.point(reach);
+        let direction = rng.direction().normalize();
+        let size = 10f32.powf(rng.range(-4.0, 1.0));
+        let intensity = Vec3::splat(10f32.powf(rng.range(-6.0, 6.0)));
+        match i % 5 {
+            0 => AnyLight::Point(PointLight { position, intensity }),
+            1 => {
+                let cos_outer = 1.0 - 10f32.powf(rng.range(-6.0, 0.2));
+                let cos_inner = 0.5 * (1.0 + cos_outer);
+                AnyLight::Spot(SpotLight { position, intensity, direction, cos_inner, cos_outer })
+            }
+            2 => AnyLight::Sphere(area(SphereShape { center: position, radius: size })),
+            3 => {
+                let shape = DiskShape { center: position, normal: direction, radius: size };
+                let radiance = intensity;
+                AnyLight::Disk(AreaLight::<DiskShape> { shape, radiance, is_two_sided: false })
+            }
+            _ => {
+                let [v0, v1, v2] = [(); 3].map(|()| position + size * rng.point(1.0));
+                AnyLight::Triangle(area(Triangle { v0, v1, v2 }))
+            }
+        }
+    };
+    (0..61).map(&mut light).collect()
+}
+
+/// A choice among lights.
+#[derive(Clone, Copy, Debug, Type)]
+struct Chosen {
+    chance: f32,
+    /// The probability of the light that was chosen.
+    again: f32,
+    /// The probabilities of all lights.
+    sum: f32,
+}
+
+/// Points at a light, inside of one, and far away from all; those of a medium have no normal.
+fn choices() -> Row {
+    let name = "choices of 61 lights by a tree";
+    Row::new(name, 5, Unit::Relative, Bound::all(1e-5), |run| {
+        let mut all = Outcome::default();
+        for part in 0..8 {
+            let run = run.part(1.0 / 8.0, part);
+            let list = many_lights(&mut Source::new(run.seed));
+            let lights = Lights::new(&list, cube())?.with_tree()?;
+            let kernel = kernel!(|from: SurfacePoint, u: f32| {
+                let choice = lights.choose(from, u);
+                let mut sum = 0.0;
+                for i in 0..lights.count() {
+                    sum += lights.chance(i, from);
+                }
+                Chosen { chance: choice.chance, again: lights.chance(choice.light, from), sum }
+            });
+            let make = |rng: &mut Source| {
+                let light = &list[rng.below(list.len())];
+                let way = rng.direction() * 10f32.powf(rng.range(-5.0, 5.0));
+                let extent = light.extent();
+                let position = 0.5 * (extent.min + extent.max) + way;
+                let is_in_medium = rng.below(4) == 0;
+                let normal = if is_in_medium { Vec3::ZERO } else { rng.direction().normalize() };
+                (SurfacePoint { position, normal, error: 0.0 }, rng.unit())
+            };
+            let found = run.measure(&[kernel], make, |_, found| {
+                let [chance, again, sum] = [found.chance, found.again, found.sum].map(f64::from);
+                // A NaN is not the lesser of two, and what has no chance is not chosen.
+                Some((again - chance).abs() / chance + (sum - 1.0).abs())
+            })?;
+            all.merge(run.unit, found);
+        }
+        Ok(all)
+    })
+    .share(0.02)
 }
