@@ -104,27 +104,28 @@ fn scenes_have_their_features_alone() -> Result<(), Box<dyn Error>> {
 fn tables(all: &[Found]) -> String {
     let line = |cells: &[String]| format!("| {} |\n", cells.join(" | "));
     let rule = |count: usize| format!("|{}\n", "---|".repeat(count));
-    let numbers = (1..=all.len()).map(|n| n.to_string());
-    let mut text = line(&[String::new()].into_iter().chain(numbers).collect::<Vec<_>>());
-    text += &rule(all.len() + 1);
-    for feature in FEATURES {
-        let cell = |of: &Found| {
-            let mark = if of.scene.uses(feature.name) { "●" } else { "" };
-            mark.to_owned()
-        };
-        let cells = [feature.name.to_owned()].into_iter().chain(all.iter().map(cell));
-        text += &line(&cells.collect::<Vec<_>>());
-    }
     let heads = ["", "scene", "WGSL bytes", "functions", "SPIR-V instructions", "bindings"];
-    text += "\nThe scenes, and how large they are:\n\n";
-    text += &line(&heads.map(str::to_owned));
-    text += &rule(heads.len());
+    let mut text = line(&heads.map(str::to_owned)) + &rule(heads.len());
     for (n, of) in all.iter().enumerate() {
         let size = of.program.size;
         let numbers = [size.wgsl_bytes, size.functions, size.instructions, size.bindings];
         let cells = [(n + 1).to_string(), of.scene.name.to_owned()];
         let cells = cells.into_iter().chain(numbers.map(|n| n.to_string()));
         text += &line(&cells.collect::<Vec<_>>());
+    }
+    text += "\nWhat each of them has, a column for each scene, by its number:\n\n";
+    // A column is a character; above it are the tens of every tenth scene, and the fives between.
+    let above = |n: usize| match n % 10 {
+        0 => char::from_digit((n / 10) as u32, 10).unwrap_or('+'),
+        5 => '5',
+        _ => ' ',
+    };
+    let marks = |of: &mut dyn Iterator<Item = char>| format!("`{}`", of.collect::<String>());
+    text += &line(&["feature".to_owned(), marks(&mut (1..=all.len()).map(above))]);
+    text += &rule(2);
+    for feature in FEATURES {
+        let mark = |of: &Found| if of.scene.uses(feature.name) { '●' } else { '·' };
+        text += &line(&[feature.name.to_owned(), marks(&mut all.iter().map(mark))]);
     }
     text
 }
