@@ -359,11 +359,15 @@ fn reciprocity(model: Model) -> Row {
         })
     });
     match model.name {
-        "Conductor" | "Coated Lambert" | "ThinDielectric" | "SheenCoated Eon"
-        | "MetallicRoughness" => row.misses(
+        "Conductor" | "Coated Lambert" | "ThinDielectric" => row.misses(
             Bound::all(1.0),
             "As documented: light that is scattered several times is added by a factor of the viewer's \
              direction alone (Turquin 2019).",
+        ),
+        "SheenCoated Eon" | "MetallicRoughness" => row.misses(
+            Bound::all(1.0),
+            "As documented: what is under sheen gets the light that the sheen does not reflect towards the \
+             viewer, a factor of one direction alone.",
         ),
         "Dielectric" => row.misses(
             Bound::all(1.0),
