@@ -9,7 +9,7 @@ use crate::machine::{A3, B, Machine, Method, On, Slice, V3, Value, name};
 macro_rules! queries {
     ([$($g:tt)*] $t:ty, $view:ty, |$this:ident| $scene:expr) => {
         const _: () = {
-            use $crate::bvh::ray_query::{any_hit_each, closest_hit_each, count_hits};
+            use $crate::bvh::ray_query::{any_hit_each, closest_hit_each};
             use $crate::bvh::traverse::CostOn;
             use $crate::bvh::{RayQueryOn, methods::ViewRecordOn};
             use $crate::geometry::{HitOn, RayOn, transform_normal_back};
@@ -35,8 +35,6 @@ macro_rules! queries {
                 |m, scene, (ray): (RayOn<M>)| -> <$view as RayQueryOn>::Hits<M> {
                     RayQueryOn::hits(scene, m, ray)
                 }
-                "count_hits", [],
-                |m, scene, (ray): (RayOn<M>)| -> U<M> { count_hits(m, scene, ray) }
                 "closest_hit_where", [R: Coerce<M, B<M>>, G: Fn(&M, ViewRecordOn<$view, M>) -> R],
                 |m, scene, (ray, accept): (RayOn<M>, G)| -> ViewRecordOn<$view, M> {
                     let accept = |record| accept(m, record).coerce(m);

@@ -5,10 +5,7 @@ use glam::{Affine3, Vec3};
 use super::traverse::CostOn;
 use super::{Accelerated, Bvh, BvhList, Cost, Hits, Instances, RayQueryOn, SceneView, View};
 use crate::geometry::{Hit, HitOn, HitRecord, Primitive, Ray, RayOn, transform_normal_back};
-use crate::machine::{
-    A3, B, Coerce, Const, Cursor, Data, Loop, Machine, On, Scalar, Slice, Type, U, V3, Var, fill,
-    op,
-};
+use crate::machine::{A3, B, Coerce, Const, Data, Machine, On, Scalar, Slice, Type, U, V3, fill};
 
 /// A scene whose hits are [`Hit`]s: what a kernel that is generic over its scene asks for, by a
 /// parameter `scene: &S` with `S: RayQuery + ?Sized`. Its queries are those of [`RecordQuery`], which
@@ -292,81 +289,7 @@ pub trait RecordQuery: Sync {
         self.view().any_hit_with_cost_of(ray)
     }
 
-    /// Counts the hits of `ray`: every crossing of every primitive, as [`RecordQuery::hits`] finds
-    /// them.
-    ///
-    /// ```
-    /// use raydsl::bvh::BvhList;
-    /// use raydsl::prelude::*;
-    /// use raydsl::{RayQuery, assert_variants_agree, primitive};
-    ///
-    /// /// A square with its centre on the z axis.
-    /// #[primitive]
-    /// struct Card {
-    ///     z: f32,
-    ///     half: f32,
-    /// }
-    ///
-    /// #[primitive]
-    /// impl Card {
-    ///     fn intersect(&self, ray: Ray) -> Hit {
-    ///         let t = (self.z - ray.origin.z) / ray.direction.z;
-    ///         let p = ray.origin + ray.direction * t;
-    ///         Hit::new(p.x.abs() <= self.half && p.y.abs() <= self.half, t)
-    ///     }
-    ///
-    ///     fn get_bounds(&self) -> Aabb {
-    ///         let (x, z) = (self.half, self.z);
-    ///         Aabb { min: vec3(-x, -x, z), max: vec3(x, x, z) }
-    ///     }
-    /// }
-    ///
-    /// /// A tree and a list of trees of other primitives.
-    /// #[derive(RayQuery)]
-    /// struct Scene<'a> {
-    ///     walls: Bvh<'a, Triangle>,
-    ///     cards: BvhList<'a, Card>,
-    /// }
-    ///
-    /// let wall = |z: f32| Triangle {
-    ///     v0: vec3(-4.0, -4.0, z),
-    ///     v1: vec3(4.0, -4.0, z),
-    ///     v2: vec3(0.0, 4.0, z),
-    /// };
-    /// let walls: Vec<Triangle> = (1..8).map(|i| wall(i as f32)).collect();
-    /// let cards: Vec<Card> = (0..9).map(|i| Card { z: 3.0 * i as f32, half: 1.0 }).collect();
-    /// let trees = [Bvh::build(&cards[..4])?, Bvh::build(&cards[4..])?];
-    /// let rays: Vec<(Ray,)> =
-    ///     (0..200).map(|i| (Ray::new(vec3(0.01 * i as f32, 0.1, -9.0), Vec3::Z),)).collect();
-    ///
-    /// let slice = &walls[..];
-    /// let of_slice = kernel!(|ray: Ray| slice.count_hits(ray));
-    /// let tree = Bvh::build(&walls)?;
-    /// let of_tree = kernel!(|ray: Ray| tree.count_hits(ray));
-    /// let scene = Scene { walls: Bvh::build(&walls)?, cards: BvhList::new(&trees)? };
-    /// let of_scene = kernel!(|ray: Ray| scene.count_hits(ray));
-    /// assert_variants_agree!(&of_slice, &rays);
-    /// assert_variants_agree!(&of_tree, &rays);
-    /// assert_variants_agree!(&of_scene, &rays);
-    /// for (ray,) in rays {
-    ///     assert_eq!(tree.count_hits(ray), tree.hits(ray).count() as u32);
-    ///     assert_eq!(of_slice.call((ray,)), tree.hits(ray).count() as u32);
-    ///     assert_eq!(of_scene.call((ray,)), scene.hits(ray).count() as u32);
-    /// }
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
-    fn count_hits(&self, ray: Ray) -> u32 {
-        let m = &Scalar::default();
-        count_hits(m, self.view(), Type::splat(m, ray)).0
-    }
-
     // What kernels call that are generic over the scene.
-
-    #[doc(hidden)]
-    #[inline(always)]
-    fn count_hits_on<M: Machine>(m: &M, scene: &Self, ray: impl Coerce<M, RayOn<M>>) -> U<M> {
-        count_hits(m, scene.view(), ray.coerce(m))
-    }
 
     #[doc(hidden)]
     #[inline(always)]
@@ -513,27 +436,6 @@ pub trait RecordQuery: Sync {
         let map = RayQueryOn::to_object(scene.view(), m, hit.coerce(m).inst_id);
         transform_normal_back::on(m, normal, map)
     }
-}
-
-/// Counts the hits of a ray.
-#[inline(always)]
-pub(crate) fn count_hits<M: Machine, V: RayQueryOn>(m: &M, scene: V, ray: RayOn<M>) -> U<M> {
-    let hits = scene.hits(m, ray);
-    let state = hits.begin(m);
-    let count = Var::new(m, "count", U(m.u32(0)));
-    let repeat = Loop::new(m);
-    loop {
-        if !repeat.test(m, hits.advance(m, &state)) {
-            break;
-        }
-        count.set(m, U(m.u32_binary(op::WrappingAdd, count.get(m).0, m.u32(1))));
-        repeat.continuing(m);
-        if !repeat.again(m) {
-            break;
-        }
-    }
-    repeat.end(m);
-    count.get(m)
 }
 
 /// Traces rays that a closure of the kernel makes.
