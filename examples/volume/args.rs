@@ -28,7 +28,8 @@ pub(crate) struct Args {
     #[arg(long, value_name = "D", value_parser = length)]
     pub(crate) unit: Option<f32>,
     /// What is cut away: sphere:X,Y,Z,R, plane:X,Y,Z,D (all p with n·p <= D), or mesh:FILE, in the
-    /// file's units; with `!` before it, all but that. Several are cut one after another.
+    /// file's units; with `!` before it, all but that. Several are cut one after another, but one
+    /// plane at most on each side.
     #[arg(long, value_name = "CUT", allow_hyphen_values = true)]
     pub(crate) cut: Vec<String>,
     /// Cut nothing where no --cut is given.

@@ -109,6 +109,14 @@ impl Cuts {
                     let message = format!("--cut {text}: the plane's normal has a length");
                     return Err(Failure::Usage(message));
                 }
+                // Of two, a ray that goes from one half of space into the other's is misjudged.
+                if !parts.halves.is_empty() {
+                    let message = format!(
+                        "--cut {text}: one plane can cut away and one, with `!` before it, can be kept; \
+                         write a box as a mesh"
+                    );
+                    return Err(Failure::Usage(message));
+                }
                 parts.halves.push(Half { normal, offset });
             }
             Some(("mesh", file)) => {
@@ -149,5 +157,7 @@ mod tests {
         for wrong in ["", "sphere", "sphere:1,2,3", "sphere:1,2,3,0", "plane:0,0,0,1", "cube:1"] {
             assert!(cuts.add(wrong).is_err(), "{wrong}");
         }
+        // One plane on each side.
+        assert!(cuts.add("!plane:0,1,0,1").is_err() && cuts.add("plane:0,1,0,1").is_ok());
     }
 }
