@@ -342,8 +342,8 @@ fn piece_from(cubic: Cubic, extremes: Extremes, interval: Interval, x: f32, valu
 
 /// A cell on the way through it, piece by piece.
 ///
-/// Walks advance it in the same loop as their cells: were it a loop of its own, all rays of a packet
-/// would wait in each cell for the one that meets the most knots there.
+/// The walk through a grid advances it in the same loop as its cells: were it a loop of its own, all rays
+/// of a packet would wait in each cell for the one that meets the most knots there.
 #[derive(Clone, Copy, Debug, Type)]
 pub(super) struct CellPieces {
     /// The value along the ray.

@@ -254,7 +254,7 @@ fn roulette() -> Row {
     .share(0.1)
 }
 
-/// Lights of every kind, large and small, bright and dim, close together and far apart.
+/// Lights of five kinds, large and small, bright and dim, close together and far apart.
 fn many_lights(rng: &mut Source) -> Vec<AnyLight> {
     let mut light = |i: usize| {
         let reach = 10f32.powf(rng.range(-3.0, 3.0));
