@@ -125,22 +125,31 @@ where
 impl ::raydsl::__private::Primitive for ColorSphere {
     type Hit = Hit;
     type Shared = ();
-    type SharedOr<__T: ::raydsl::__private::Type> = __T;
+    type SharedOr<__T: ::raydsl::__private::Shared> = __T;
     #[inline(always)]
-    fn map_shared<'__a, __T: ::raydsl::__private::Type, __U: ::raydsl::__private::Type>(
-        all: ::raydsl::__private::Slice<'__a, __T>,
-        other: impl FnOnce(
-            ::raydsl::__private::Slice<'__a, __T>,
-        ) -> ::raydsl::__private::Slice<'__a, __U>,
-    ) -> ::raydsl::__private::Slice<'__a, __U> {
+    fn map_shared<
+        '__a,
+        __T: ::raydsl::__private::Shared,
+        __U: ::raydsl::__private::Shared,
+    >(
+        all: <__T as ::raydsl::__private::Shared>::Views<'__a>,
+        other: impl FnOnce(__T::Views<'__a>) -> __U::Views<'__a>,
+    ) -> <__U as ::raydsl::__private::Shared>::Views<'__a> {
         other(all)
     }
     const SLACK: f32 = <ColorSphere>::SLACK;
     #[inline(always)]
-    fn intersect(&self, ray: ::raydsl::__private::Ray, shared: &[()]) -> Hit {
+    fn intersect(
+        &self,
+        ray: ::raydsl::__private::Ray,
+        shared: <() as ::raydsl::__private::Shared>::Slices<'_>,
+    ) -> Hit {
         <ColorSphere>::intersect(self, ray)
     }
-    fn get_bounds(&self, shared: &[()]) -> ::raydsl::__private::Aabb {
+    fn get_bounds(
+        &self,
+        shared: <() as ::raydsl::__private::Shared>::Slices<'_>,
+    ) -> ::raydsl::__private::Aabb {
         <ColorSphere>::get_bounds(self)
     }
     #[inline(always)]
@@ -148,7 +157,7 @@ impl ::raydsl::__private::Primitive for ColorSphere {
         m: &__M,
         prim: <Self as ::raydsl::__private::Type>::On<__M>,
         ray: ::raydsl::__private::RayOn<__M>,
-        shared: ::raydsl::__private::Slice<'_, ()>,
+        shared: <() as ::raydsl::__private::Shared>::Views<'_>,
     ) -> <Hit as ::raydsl::__private::Type>::On<__M> {
         <ColorSphere>::intersect_on(m, prim, ray)
     }

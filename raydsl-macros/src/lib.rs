@@ -134,7 +134,8 @@ fn expand_closure(input: proc_macro2::TokenStream) -> proc_macro2::TokenStream {
 ///
 /// An enum of primitives is a primitive. `#[primitive(normal, area)]` on it forwards these methods
 /// to its kinds: some of `surface_point`, `normal`, `uv`, `area`, `sample`, and `Surface`, the trait
-/// of what integrators shade.
+/// of what integrators shade. Where kinds share different data, the enum names the types:
+/// `#[primitive(shared(Vec3, f32))]`, two or three, and a tree takes a tuple of their slices.
 #[proc_macro_attribute]
 pub fn primitive(args: TokenStream, item: TokenStream) -> TokenStream {
     rewrite::with_readable_names(expand_primitive(args.into(), item.into())).into()
@@ -160,8 +161,9 @@ fn expand_primitive(
         return refused(&item, &item, what, "write `#[primitive] struct Name { ... }`");
     };
     if let syn::Data::Enum(e) = &s.data {
-        let forwarded = || items::forwarded(args, &s, e);
-        return twin::primitive_enum(&s, e, forwarded);
+        let arguments = items::EnumArguments::of(args);
+        let shared = arguments.shared.clone();
+        return twin::primitive_enum(&s, e, &shared, || items::forwarded(arguments, &s, e));
     }
     let twin = twin::primitive_item(&s);
     if args.is_empty() {

@@ -2,8 +2,8 @@
 
 pub use crate::bvh::{Joined, RayQueryOn, RecordQuery, SceneArgument, Tabled};
 pub use crate::geometry::{
-    Aabb, Hit, HitOn, HitRecord, Kinds, Lacking, Primitive, Ray, RayOn, SurfacePointOn,
-    shared_of_kind, shared_slice,
+    Aabb, Hit, HitOn, HitRecord, Kinds, Lacking, Primitive, Ray, RayOn, Several, Shared,
+    SurfacePointOn, shared_among, shared_of_kind, shared_views,
 };
 pub use crate::kernel::{Counting, Kernel, Lifted, Native4, Native8, Native16};
 pub use crate::machine::lifted::*;

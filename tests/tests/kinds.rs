@@ -288,6 +288,7 @@ impl Strip {
 
 /// Enums of kinds, with data and without, and two kinds that share the same.
 #[primitive]
+#[derive(Debug)]
 enum Any {
     Lamp(Lamp),
     Strip(Strip),
@@ -379,6 +380,212 @@ fn enums_of_kinds_share_data() {
         let expected = closest(all.iter().map(|any| of_any(any, *ray)));
         assert_eq!(bvh.closest_hit(*ray), expected);
     }
+    let tree = kernel!(|ray: Ray| bvh.closest_hit(ray));
+    assert_variants_agree!(&tree, &rays);
+}
+
+/// A ball that shares a table of sizes.
+#[primitive]
+#[derive(Debug)]
+struct Sized {
+    center: Vec3,
+    size: u32,
+}
+
+#[primitive]
+impl Sized {
+    const MAX_CROSSINGS: u32 = 2;
+
+    fn intersect(&self, ray: Ray, sizes: &[f32]) -> Hit {
+        sphere::intersect(ray, self.center, sizes[self.size as usize])
+    }
+
+    fn get_bounds(&self, sizes: &[f32]) -> Aabb {
+        Aabb::from_sphere(self.center, sizes[self.size as usize])
+    }
+}
+
+// ANCHOR: several
+/// Two kinds that share different data, and one that shares none.
+#[primitive(shared(Vec3, f32))]
+#[derive(Debug)]
+enum Mixed {
+    Face(IndexedTriangle),
+    Sized(Sized),
+    Panel(Panel),
+}
+// ANCHOR_END: several
+
+/// A disk that shares pairs of a normal and a radius, in whole numbers.
+#[primitive]
+#[derive(Debug)]
+struct Coin {
+    center: Vec3,
+    form: u32,
+}
+
+#[primitive]
+impl Coin {
+    fn intersect(&self, ray: Ray, forms: &[UVec2]) -> Hit {
+        let form = forms[self.form as usize];
+        disk::intersect(ray, self.center, vec3(0.6, 0.0, 0.8), form.x as f32 / form.y as f32)
+    }
+
+    fn get_bounds(&self, forms: &[UVec2]) -> Aabb {
+        let form = forms[self.form as usize];
+        disk::get_bounds(self.center, vec3(0.6, 0.0, 0.8), form.x as f32 / form.y as f32)
+    }
+}
+
+/// Three types of data; kinds are an enum that shares two of them, and one that shares one of them.
+#[primitive(shared(UVec2, f32, Vec3))]
+#[derive(Debug)]
+enum Everything {
+    Mixed(Mixed),
+    Coin(Coin),
+    Any(Any),
+    Strip(Strip),
+}
+
+fn mixed(rng: &mut Rng, vertices: &[Vec3], sizes: &[f32]) -> Vec<Mixed> {
+    let sized =
+        |rng: &mut Rng| Sized { center: rng.point(3.0), size: rng.below(sizes.len()) as u32 };
+    let of_shape = |shape| match shape {
+        Shape::Ball(_) => None,
+        Shape::Face(face) => Some(Mixed::Face(face)),
+        Shape::Panel(panel) => Some(Mixed::Panel(panel)),
+    };
+    let mut all: Vec<Mixed> = (0..30).map(|_| Mixed::Sized(sized(rng))).collect();
+    all.extend(shapes(rng, vertices).into_iter().filter_map(of_shape));
+    all
+}
+
+fn of_mixed(mixed: &Mixed, ray: Ray, vertices: &[Vec3], sizes: &[f32]) -> Hit {
+    match mixed {
+        Mixed::Face(f) => f.intersect(ray, vertices),
+        Mixed::Sized(s) => s.intersect(ray, sizes),
+        Mixed::Panel(p) => p.intersect(ray),
+    }
+}
+
+#[test]
+fn kinds_share_different_data() {
+    let mut rng = Rng::of("kinds share different data");
+    let vertices: Vec<Vec3> = (0..40).map(|_| rng.point(3.0)).collect();
+    let sizes: Vec<f32> = (0..7).map(|i| 0.2 + 0.05 * i as f32).collect();
+    let all = mixed(&mut rng, &vertices, &sizes);
+    let config = BuildConfig { min_wide_size: 0, ..BuildConfig::default() };
+    // ANCHOR: several_tree
+    let bvh = Bvh::build_sharing(&all, (&vertices, &sizes), &config).expect("finite bounds");
+    // ANCHOR_END: several_tree
+    let wide = Bvh::build_wide(&all, (&vertices, &sizes), &config).expect("finite bounds");
+    let (first, second) = all.split_at(all.len() / 2);
+    let trees = [first, second].map(|half| {
+        Bvh::build_sharing(half, (&vertices[..], &sizes[..]), &config).expect("finite bounds")
+    });
+    let list = BvhList::new(&trees).expect("trees share the same");
+    let one = [bvh];
+    let mut placed = Instances::new(&one).expect("trees share the same");
+    let moved = Affine3::from_translation(vec3(1.0, 0.0, 0.0));
+    placed.group(&[Instance::new(0, moved)]).expect("a transform with an inverse");
+    let bvh = &one[0];
+    let rays = rays(&mut rng, 2000);
+    let mut hits = [0; 3];
+    for (ray,) in &rays {
+        let expected = closest(all.iter().map(|s| of_mixed(s, *ray, &vertices, &sizes)));
+        assert_eq!(bvh.closest_hit(*ray), expected);
+        assert_eq!(wide.closest_hit(*ray), expected);
+        assert_eq!(list.closest_hit(*ray), expected);
+        assert_eq!(bvh.any_hit(*ray), expected.is_hit);
+        if expected.is_hit {
+            hits[all[expected.prim_id as usize].kind() as usize] += 1;
+        }
+    }
+    assert!(hits.iter().all(|n| *n > 50), "{hits:?}");
+    let text = agreeing_text(bvh, &rays);
+    assert!(text.contains("scene_shared:") && text.contains("scene_shared_2:"), "{text}");
+    // Kernels read both slices, too.
+    let others = kernel!(|ray: Ray| {
+        let hit = list.closest_hit(ray);
+        let (vertices, sizes) = placed.shared();
+        let read = vertices[(hit.prim_id % 40) as usize] * sizes[(hit.prim_id % 7) as usize];
+        (hit, placed.closest_hit(ray), read)
+    });
+    assert_variants_agree!(&others, &rays);
+    let leaves = kernel!(|ray: Ray| wide.any_hit(ray));
+    assert_variants_agree!(&leaves, &rays);
+    // A scene of some kinds has their data alone.
+    let faces: Vec<Mixed> = all.iter().filter(|s| matches!(s, Mixed::Face(_))).copied().collect();
+    let faces = Bvh::build_sharing(&faces, (&vertices, &sizes), &config).expect("finite bounds");
+    let text = agreeing_text(&faces, &rays);
+    assert!(text.contains("scene_shared:") && !text.contains("scene_shared_2"), "{text}");
+    let sized: Vec<Mixed> = all.iter().filter(|s| matches!(s, Mixed::Sized(_))).copied().collect();
+    let sized = Bvh::build_sharing(&sized, (&vertices, &sizes), &config).expect("finite bounds");
+    let text = agreeing_text(&sized, &rays);
+    assert!(!text.contains("scene_shared:") && text.contains("scene_shared_2:"), "{text}");
+}
+
+/// Tests that the variants agree on the closest hits, and returns the text for devices.
+fn agreeing_text(scene: &Bvh<'_, Mixed>, rays: &[(Ray,)]) -> String {
+    let kernel = kernel!(|ray: Ray| scene.closest_hit(ray));
+    assert_variants_agree!(&kernel, rays);
+    kernel.wgsl()
+}
+
+#[test]
+fn trees_of_a_list_share_every_slice() {
+    let mut rng = Rng::of("trees of a list share every slice");
+    let vertices: Vec<Vec3> = (0..40).map(|_| rng.point(3.0)).collect();
+    let sizes = [0.5; 7];
+    let others = sizes.to_vec();
+    let all = mixed(&mut rng, &vertices, &sizes);
+    let config = BuildConfig::default();
+    let tree =
+        |sizes| Bvh::build_sharing(&all, (&vertices, sizes), &config).expect("finite bounds");
+    let same = [tree(&sizes[..]), tree(&sizes[..])];
+    assert!(BvhList::new(&same).is_ok());
+    let other = [tree(&sizes[..]), tree(&others[..])];
+    let error = BvhList::new(&other).err();
+    assert_eq!(error, Some(raydsl::bvh::ListError::SharesAnother { first: 0, tree: 1 }));
+}
+
+#[test]
+fn enums_of_kinds_share_different_data() {
+    let mut rng = Rng::of("enums of kinds share different data");
+    let vertices: Vec<Vec3> = (0..40).map(|_| rng.point(3.0)).collect();
+    let sizes: Vec<f32> = (0..7).map(|i| 0.2 + 0.05 * i as f32).collect();
+    let forms: Vec<UVec2> = (1..6).map(|i| UVec2::new(i, 4)).collect();
+    let coin = |rng: &mut Rng| Coin { center: rng.point(3.0), form: rng.below(forms.len()) as u32 };
+    let mut all: Vec<Everything> =
+        mixed(&mut rng, &vertices, &sizes).into_iter().map(Everything::Mixed).collect();
+    all.extend((0..30).map(|_| Everything::Coin(coin(&mut rng))));
+    let shapes = shapes(&mut rng, &vertices).into_iter().map(Any::Shape);
+    all.extend(shapes.map(Everything::Any));
+    all.extend((0..30).map(|first| Everything::Strip(Strip { first })));
+    let config = BuildConfig::default();
+    let bvh =
+        Bvh::build_sharing(&all, (&forms, &sizes, &vertices), &config).expect("finite bounds");
+    let rays = rays(&mut rng, 1000);
+    let of_any = |any: &Any, ray| match any {
+        Any::Lamp(_) => Hit::miss(),
+        Any::Strip(s) => s.intersect(ray, &vertices),
+        Any::Shape(s) => of_shape(s, ray, &vertices),
+    };
+    let of_all = |thing: &Everything, ray| match thing {
+        Everything::Mixed(m) => of_mixed(m, ray, &vertices, &sizes),
+        Everything::Coin(c) => c.intersect(ray, &forms),
+        Everything::Any(a) => of_any(a, ray),
+        Everything::Strip(s) => s.intersect(ray, &vertices),
+    };
+    let mut hits = [0; 4];
+    for (ray,) in &rays {
+        let expected = closest(all.iter().map(|thing| of_all(thing, *ray)));
+        assert_eq!(bvh.closest_hit(*ray), expected);
+        if expected.is_hit {
+            hits[all[expected.prim_id as usize].kind() as usize] += 1;
+        }
+    }
+    assert!(hits.iter().all(|n| *n > 20), "{hits:?}");
     let tree = kernel!(|ray: Ray| bvh.closest_hit(ray));
     assert_variants_agree!(&tree, &rays);
 }

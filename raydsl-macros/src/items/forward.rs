@@ -1,10 +1,11 @@
-//! Expansion of `#[primitive(normal, area)] enum T`: methods of the enum that call those of its
+//! Arguments of `#[primitive(normal, area)] enum T`, and methods of the enum that call those of its
 //! kinds.
 
 use proc_macro2::{Ident, Span, TokenStream};
 use quote::{quote, quote_spanned};
 use syn::parse::Parser as _;
 use syn::punctuated::Punctuated;
+use syn::spanned::Spanned as _;
 
 use super::kernel_impl;
 use crate::diag::Errors;
@@ -17,20 +18,131 @@ const METHODS: [&str; 5] = ["surface_point", "normal", "uv", "area", "sample"];
 const SURFACE: &str = "Surface";
 const OF_SURFACE: [&str; 5] = ["surface", "albedo", "uv", "material", "crossing"];
 
+/// The argument with the types that kinds share.
+const SHARED: &str = "shared";
+
 /// A variant of the enum: its name, and the type of its primitive.
 type Variant<'a> = (&'a Ident, &'a syn::Type);
 
+/// The largest number of types that kinds of an enum may share.
+const MOST_SHARED: usize = 3;
+
+/// What stands in the parentheses of the attribute on an enum.
+pub(crate) struct EnumArguments {
+    /// The methods and traits to forward.
+    forwarded: Vec<Ident>,
+    /// The types of `shared(A, B)`: none if the kinds share one type of data or none.
+    pub(crate) shared: Vec<syn::Type>,
+    errors: Errors,
+}
+
+/// One of the arguments.
+enum Argument {
+    Forwarded(Ident),
+    Shared(Ident, Vec<syn::Type>),
+}
+
+impl syn::parse::Parse for Argument {
+    fn parse(input: syn::parse::ParseStream<'_>) -> syn::Result<Self> {
+        let name: Ident = input.parse()?;
+        if name != SHARED || !input.peek(syn::token::Paren) {
+            return Ok(Self::Forwarded(name));
+        }
+        let types;
+        syn::parenthesized!(types in input);
+        let types = Punctuated::<syn::Type, syn::Token![,]>::parse_terminated(&types)?;
+        Ok(Self::Shared(name, types.into_iter().collect()))
+    }
+}
+
+impl EnumArguments {
+    /// Reads the arguments and keeps what is wrong with them.
+    pub(crate) fn of(args: TokenStream) -> Self {
+        let mut errors = Errors::default();
+        let (mut forwarded, mut shared) = (Vec::new(), Vec::new());
+        let all: Vec<String> =
+            METHODS.iter().chain([&SURFACE]).map(|name| format!("`{name}`")).collect();
+        let help = format!("write some of {}, or nothing", all.join(", "));
+        let written = match Punctuated::<Argument, syn::Token![,]>::parse_terminated.parse2(args) {
+            Ok(written) => written,
+            Err(e) => {
+                let what =
+                    "`#[primitive]` on an enum takes names of methods that all its kinds have";
+                errors.at(e.span(), what, &help);
+                Punctuated::new()
+            }
+        };
+        for argument in written {
+            match argument {
+                Argument::Shared(name, types) if shared.is_empty() => {
+                    shared = checked_types(&name, types, &mut errors);
+                }
+                Argument::Shared(name, _) => {
+                    errors.at(name.span(), "`shared` is there twice", "write all types into one");
+                }
+                Argument::Forwarded(name) if name == SHARED => {
+                    let what = "`shared` names the types of data that the kinds share";
+                    errors.at(name.span(), what, "write `shared(A, B)`");
+                }
+                Argument::Forwarded(name)
+                    if name != SURFACE && !METHODS.iter().any(|m| name == m) =>
+                {
+                    let what = format!("an enum of primitives cannot forward `{name}`");
+                    errors.at(name.span(), what, &help);
+                }
+                Argument::Forwarded(name) if forwarded.contains(&name) => {
+                    errors.at(
+                        name.span(),
+                        format!("`{name}` is there twice"),
+                        "leave one of them out",
+                    );
+                }
+                Argument::Forwarded(name) => forwarded.push(name),
+            }
+        }
+        Self { forwarded, shared, errors }
+    }
+}
+
+/// Returns the types in `shared(..)`, or none if they are no list of two or three.
+fn checked_types(name: &Ident, types: Vec<syn::Type>, errors: &mut Errors) -> Vec<syn::Type> {
+    let text = |ty: &syn::Type| quote!(#ty).to_string();
+    for (i, ty) in types.iter().enumerate() {
+        if types[..i].iter().any(|before| text(before) == text(ty)) {
+            let what = format!("`{}` is there twice", text(ty));
+            errors.at(
+                ty.span(),
+                what,
+                "kinds that share the same type share one slice: name it once",
+            );
+            return Vec::new();
+        }
+    }
+    if types.len() < 2 {
+        let what = "`shared` names the types of an enum whose kinds share different data";
+        errors.at(name.span(), what, "write `shared(A, B)`, or nothing if there is one type");
+        return Vec::new();
+    }
+    if types.len() > MOST_SHARED {
+        let what = format!("the kinds of an enum share at most {MOST_SHARED} types of data");
+        let help = "put some kinds into a tree of their own, and the trees into a struct of scenes: \
+                    `#[derive(RayQuery)] struct Scenes<'a> { .. }`";
+        errors.at(types[MOST_SHARED].span(), what, help);
+        return Vec::new();
+    }
+    types
+}
+
 /// Returns the methods that the attribute names.
 pub(crate) fn forwarded(
-    args: TokenStream,
+    arguments: EnumArguments,
     item: &syn::DeriveInput,
     e: &syn::DataEnum,
 ) -> TokenStream {
-    if args.is_empty() {
-        return TokenStream::new();
+    let EnumArguments { forwarded: names, mut errors, .. } = arguments;
+    if names.is_empty() {
+        return errors.into_tokens();
     }
-    let mut errors = Errors::default();
-    let names = names(args, &mut errors);
     let variants: Vec<Variant<'_>> =
         e.variants.iter().flat_map(|v| v.fields.iter().map(|f| (&v.ident, &f.ty))).collect();
     let (of_trait, methods): (Vec<_>, Vec<_>) = names.into_iter().partition(|n| n == SURFACE);
@@ -47,34 +159,6 @@ pub(crate) fn forwarded(
     let lifted: TokenStream = impls.map(|i| kernel_impl(&i, &[], &mut errors)).collect();
     let errors = errors.into_tokens();
     quote!(#lifted #errors)
-}
-
-/// Returns the names in the parentheses of the attribute.
-fn names(args: TokenStream, errors: &mut Errors) -> Vec<Ident> {
-    let all: Vec<String> =
-        METHODS.iter().chain([&SURFACE]).map(|name| format!("`{name}`")).collect();
-    let help = format!("write some of {}, or nothing", all.join(", "));
-    let parser = Punctuated::<Ident, syn::Token![,]>::parse_terminated;
-    let written = match parser.parse2(args) {
-        Ok(names) => names,
-        Err(e) => {
-            let what = "`#[primitive]` on an enum takes names of methods that all its kinds have";
-            errors.at(e.span(), what, &help);
-            return Vec::new();
-        }
-    };
-    let mut names: Vec<Ident> = Vec::new();
-    for name in written {
-        if name != SURFACE && !METHODS.iter().any(|m| name == m) {
-            let what = format!("an enum of primitives cannot forward `{name}`");
-            errors.at(name.span(), what, &help);
-        } else if names.contains(&name) {
-            errors.at(name.span(), format!("`{name}` is there twice"), "leave one of them out");
-        } else {
-            names.push(name);
-        }
-    }
-    names
 }
 
 /// The parameters and the result of a function, its arguments, and what it returns in words.

@@ -10,7 +10,7 @@ mod scene;
 mod shape;
 
 pub(crate) use closure::{ClosureKernel, kernel_closure};
-pub(crate) use forward::forwarded;
+pub(crate) use forward::{EnumArguments, forwarded};
 pub(crate) use function::{KnownBy, kernel_fn};
 pub(crate) use methods::{kernel_impl, kernel_trait};
 pub(crate) use primitive::primitive_impl;

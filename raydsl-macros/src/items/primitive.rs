@@ -42,7 +42,7 @@ pub(crate) fn primitive_impl(item: &syn::ItemImpl) -> TokenStream {
                 &self,
                 axis: usize,
                 at: f32,
-                shared: &[#shared],
+                shared: <#shared as #p::Shared>::Slices<'_>,
             ) -> (#p::Aabb, #p::Aabb) {
                 <#self_ty>::split_primitive(self, axis, at #cut)
             }
@@ -57,11 +57,11 @@ pub(crate) fn primitive_impl(item: &syn::ItemImpl) -> TokenStream {
             #(#constants)*
 
             #[inline(always)]
-            fn intersect(&self, ray: #p::Ray, shared: &[#shared]) -> #record {
+            fn intersect(&self, ray: #p::Ray, shared: <#shared as #p::Shared>::Slices<'_>) -> #record {
                 <#self_ty>::intersect(self, ray #met)
             }
 
-            fn get_bounds(&self, shared: &[#shared]) -> #p::Aabb {
+            fn get_bounds(&self, shared: <#shared as #p::Shared>::Slices<'_>) -> #p::Aabb {
                 <#self_ty>::get_bounds(self #bounded)
             }
 
@@ -72,7 +72,7 @@ pub(crate) fn primitive_impl(item: &syn::ItemImpl) -> TokenStream {
                 m: &__M,
                 prim: <Self as #p::Type>::On<__M>,
                 ray: #p::RayOn<__M>,
-                shared: #p::Slice<'_, #shared>,
+                shared: <#shared as #p::Shared>::Views<'_>,
             ) -> <#record as #p::Type>::On<__M> {
                 <#self_ty>::intersect_on(m, prim, ray #met)
             }
@@ -98,11 +98,11 @@ fn mistaken(item: &syn::ItemImpl, parts: &Parts<'_>) -> TokenStream {
             type Shared = #shared;
             #among
 
-            fn intersect(&self, _: #p::Ray, _: &[#shared]) -> #record {
+            fn intersect(&self, _: #p::Ray, _: <#shared as #p::Shared>::Slices<'_>) -> #record {
                 ::core::unreachable!()
             }
 
-            fn get_bounds(&self, _: &[#shared]) -> #p::Aabb {
+            fn get_bounds(&self, _: <#shared as #p::Shared>::Slices<'_>) -> #p::Aabb {
                 ::core::unreachable!()
             }
 
@@ -110,7 +110,7 @@ fn mistaken(item: &syn::ItemImpl, parts: &Parts<'_>) -> TokenStream {
                 _: &__M,
                 _: <Self as #p::Type>::On<__M>,
                 _: #p::RayOn<__M>,
-                _: #p::Slice<'_, #shared>,
+                _: <#shared as #p::Shared>::Views<'_>,
             ) -> <#record as #p::Type>::On<__M> {
                 ::core::unreachable!()
             }
@@ -240,13 +240,13 @@ impl<'a> Parts<'a> {
             None => (quote!(__T), quote!(__U), quote!(other), quote!(other(all))),
         };
         quote! {
-            type SharedOr<__T: #p::Type> = #of_t;
+            type SharedOr<__T: #p::Shared> = #of_t;
 
             #[inline(always)]
-            fn map_shared<'__a, __T: #p::Type, __U: #p::Type>(
-                all: #p::Slice<'__a, #of_t>,
-                #other: impl FnOnce(#p::Slice<'__a, __T>) -> #p::Slice<'__a, __U>,
-            ) -> #p::Slice<'__a, #of_u> {
+            fn map_shared<'__a, __T: #p::Shared, __U: #p::Shared>(
+                all: <#of_t as #p::Shared>::Views<'__a>,
+                #other: impl FnOnce(__T::Views<'__a>) -> __U::Views<'__a>,
+            ) -> <#of_u as #p::Shared>::Views<'__a> {
                 #mapped
             }
         }

@@ -316,6 +316,24 @@ fn forwarded_methods() {
 }
 
 #[test]
+fn data_that_kinds_share() {
+    let one = |args: TokenStream, what, help| {
+        let item = quote!(
+            enum S {
+                A(Ball),
+                B(IndexedTriangle),
+            }
+        );
+        assert_one(expand_primitive(args, item), what, help);
+    };
+    one(quote!(shared), "names the types of data", "write `shared(A, B)`");
+    one(quote!(shared(Vec3)), "whose kinds share different data", "or nothing if there is one");
+    one(quote!(shared(Vec3, f32, Vec3)), "`Vec3` is there twice", "name it once");
+    one(quote!(shared(Vec3, f32, u32, i32)), "at most 3 types", "a tree of their own");
+    one(quote!(shared(Vec3, f32), shared(u32, i32)), "`shared` is there twice", "into one");
+}
+
+#[test]
 fn derives() -> syn::Result<()> {
     for (item, what) in [
         (

@@ -15,10 +15,11 @@ use crate::here::{At, in_one_place, private, private_here, quote_here};
 const MOST_KINDS: usize = 64;
 
 /// Returns the enum, its twin, and its implementation of `Primitive`; and what `more` returns, if
-/// there is no mistake.
+/// there is no mistake. `several` are the types of the slices that it names as shared.
 pub(crate) fn primitive_enum(
     item: &syn::DeriveInput,
     e: &syn::DataEnum,
+    several: &[syn::Type],
     more: impl FnOnce() -> TokenStream,
 ) -> TokenStream {
     let mut errors = Errors::default();
@@ -28,7 +29,7 @@ pub(crate) fn primitive_enum(
         return quote!(#item #errors);
     }
     let (copies, twin, more) = (copies(item), Sum::of_kinds(item, e).twin(), more());
-    let primitive = Choice { name: &item.ident, kinds }.primitive_impl();
+    let primitive = Choice { name: &item.ident, kinds, several }.primitive_impl();
     quote! {
         #copies
         #item
@@ -83,6 +84,8 @@ fn kinds(item: &syn::DeriveInput, e: &syn::DataEnum, errors: &mut Errors) -> Vec
 struct Choice<'a> {
     name: &'a Ident,
     kinds: Vec<Kind>,
+    /// The types of the slices that the kinds share, where the enum names them.
+    several: &'a [syn::Type],
 }
 
 impl Choice<'_> {
@@ -128,7 +131,25 @@ impl Choice<'_> {
     /// Returns the type of the data that the primitives of a scene share: those of the kinds that
     /// share some.
     fn shared(&self) -> TokenStream {
-        self.shared_or(quote!(()))
+        match self.several {
+            [] => self.shared_or(quote!(())),
+            several => {
+                let p = private();
+                quote!(#p::Several<(#(#several,)*)>)
+            }
+        }
+    }
+
+    /// Returns the type of the slices of the host.
+    fn slices(&self) -> TokenStream {
+        let (p, shared) = (private(), self.shared());
+        quote!(<#shared as #p::Shared>::Slices<'_>)
+    }
+
+    /// Returns the type of the slices in kernels.
+    fn views(&self) -> TokenStream {
+        let (p, shared) = (private(), self.shared());
+        quote!(<#shared as #p::Shared>::Views<'_>)
     }
 
     fn shared_or(&self, none: TokenStream) -> TokenStream {
@@ -139,17 +160,30 @@ impl Choice<'_> {
 
     /// Returns what the primitives share in an enum that this one is a kind of.
     fn shared_among(&self) -> TokenStream {
-        let (p, of_t, of_u) = (private(), self.shared_or(quote!(__T)), self.shared_or(quote!(__U)));
-        let around = |inner, ty| quote!(<#ty as #p::Primitive>::map_shared(all, #[inline(always)] |all| #inner));
-        let mapped = self.types().into_iter().rev().fold(quote!(other(all)), around);
+        let p = private();
+        // What the enum names is what it shares in any other one.
+        let (of_t, of_u, other, mapped) = if self.several.is_empty() {
+            let none = (quote!(__T), quote!(__U), quote!(other(all)));
+            let around = |(of_t, of_u, inner), ty| {
+                let kind = quote!(<#ty as #p::Primitive>);
+                let mapped = quote! {
+                    #kind::map_shared::<#of_t, #of_u>(all, #[inline(always)] |all| #inner)
+                };
+                (quote!(#kind::SharedOr<#of_t>), quote!(#kind::SharedOr<#of_u>), mapped)
+            };
+            let (of_t, of_u, mapped) = self.types().into_iter().rev().fold(none, around);
+            (of_t, of_u, quote!(other), mapped)
+        } else {
+            (self.shared(), self.shared(), quote!(_), quote!(all))
+        };
         quote! {
-            type SharedOr<__T: #p::Type> = #of_t;
+            type SharedOr<__T: #p::Shared> = #of_t;
 
             #[inline(always)]
-            fn map_shared<'__a, __T: #p::Type, __U: #p::Type>(
-                all: #p::Slice<'__a, #of_t>,
-                other: impl FnOnce(#p::Slice<'__a, __T>) -> #p::Slice<'__a, __U>,
-            ) -> #p::Slice<'__a, #of_u> {
+            fn map_shared<'__a, __T: #p::Shared, __U: #p::Shared>(
+                all: <#of_t as #p::Shared>::Views<'__a>,
+                #other: impl FnOnce(__T::Views<'__a>) -> __U::Views<'__a>,
+            ) -> <#of_u as #p::Shared>::Views<'__a> {
                 #mapped
             }
         }
@@ -162,7 +196,11 @@ impl Choice<'_> {
             let _at = At::new(ty.span());
             let p = private_here();
             let (ty, all) = (in_one_place(quote!(#ty)), in_one_place(self.shared()));
-            quote_here!(#p::shared_of_kind::<#ty, #all>(#shared))
+            if self.several.is_empty() {
+                quote_here!(#p::shared_of_kind::<#ty, #all>(#shared))
+            } else {
+                quote_here!(#p::shared_among::<#ty, #all, _>(#shared))
+            }
         };
         self.types().into_iter().map(of_kind).collect()
     }
@@ -170,8 +208,11 @@ impl Choice<'_> {
     /// Returns the same on the host.
     fn host_shared_of_kinds(&self) -> Vec<TokenStream> {
         let p = private();
-        let all = self.shared_of_kinds(&quote!(#p::shared_slice(shared)));
-        all.into_iter().map(|own| quote!(#own.elements())).collect()
+        let all = self.shared();
+        let views = self.shared_of_kinds(&quote!(#p::shared_views::<#all>(shared)));
+        let of_kind =
+            |(ty, own)| quote!(<<#ty as #p::Primitive>::Shared as #p::Shared>::of_views(#own));
+        self.types().into_iter().zip(views).map(of_kind).collect()
     }
 
     fn constants(&self) -> TokenStream {
@@ -207,18 +248,18 @@ impl Choice<'_> {
 
     /// Returns the functions of the host, which call those of a primitive's variant.
     fn host_functions(&self) -> TokenStream {
-        let (p, record, shared) = (private(), self.record(), self.shared());
+        let (p, record, slices) = (private(), self.record(), self.slices());
         let (names, types, numbers) = (self.names(), self.types(), self.numbers());
         let own = self.host_shared_of_kinds();
         quote! {
             #[inline(always)]
-            fn intersect(&self, ray: #p::Ray, shared: &[#shared]) -> #record {
+            fn intersect(&self, ray: #p::Ray, shared: #slices) -> #record {
                 match self {
                     #(Self::#names(v) => <#types as #p::Primitive>::intersect(v, ray, #own),)*
                 }
             }
 
-            fn get_bounds(&self, shared: &[#shared]) -> #p::Aabb {
+            fn get_bounds(&self, shared: #slices) -> #p::Aabb {
                 match self {
                     #(Self::#names(v) => <#types as #p::Primitive>::get_bounds(v, #own),)*
                 }
@@ -228,7 +269,7 @@ impl Choice<'_> {
                 &self,
                 axis: usize,
                 at: f32,
-                shared: &[#shared],
+                shared: #slices,
             ) -> (#p::Aabb, #p::Aabb) {
                 match self {
                     #(
@@ -251,7 +292,7 @@ impl Choice<'_> {
     /// Returns intersection on a machine: with primitives of any variant, of one variant, and of
     /// some.
     fn machine_functions(&self) -> TokenStream {
-        let (p, record, shared) = (private(), self.record(), self.shared());
+        let (p, record, views) = (private(), self.record(), self.views());
         let (names, types) = (self.names(), self.types());
         let among = self.intersect_among();
         let own = self.shared_of_kinds(&quote!(shared));
@@ -261,7 +302,7 @@ impl Choice<'_> {
                 m: &__M,
                 prim: <Self as #p::Type>::On<__M>,
                 ray: #p::RayOn<__M>,
-                shared: #p::Slice<'_, #shared>,
+                shared: #views,
             ) -> <#record as #p::Type>::On<__M> {
                 Self::intersect_among_on(m, #p::Kinds::ALL, prim, ray, shared)
             }
@@ -271,7 +312,7 @@ impl Choice<'_> {
                 m: &__M,
                 prim: &Self,
                 ray: #p::RayOn<__M>,
-                shared: #p::Slice<'_, #shared>,
+                shared: #views,
             ) -> <#record as #p::Type>::On<__M> {
                 match prim {
                     #(
@@ -288,7 +329,7 @@ impl Choice<'_> {
                 kinds: #p::Kinds,
                 prim: <Self as #p::Type>::On<__M>,
                 ray: #p::RayOn<__M>,
-                shared: #p::Slice<'_, #shared>,
+                shared: #views,
             ) -> <#record as #p::Type>::On<__M> {
                 #among
             }

@@ -2,7 +2,7 @@
 
 use super::view::Standing;
 use super::{SceneView, View};
-use crate::geometry::{Kinds, Primitive, Ray};
+use crate::geometry::{IntoShared, Kinds, Primitive, Ray, Shared, SharedSlices};
 use crate::machine::{Capture, Machine, Owner, Parameter, Resource};
 
 /// Application-defined acceleration structure: a grid, the tree of another library, a closure.
@@ -75,10 +75,11 @@ impl<'a, P: Primitive> Accelerated<'a, P> {
     /// Creates a scene of primitives with shared data, culled by `accelerator`.
     pub fn sharing(
         prims: &'a [P],
-        shared: &'a [P::Shared],
+        shared: impl IntoShared<'a, P::Shared>,
         accelerator: impl Accelerator + 'a,
     ) -> Self {
         let (accelerator, owner) = (Box::new(accelerator), Owner::new());
+        let shared = P::Shared::store(shared.into_shared());
         Self { standing: Standing { prims, shared, accelerator, owner, kinds: Kinds::of(prims) } }
     }
 
@@ -88,8 +89,8 @@ impl<'a, P: Primitive> Accelerated<'a, P> {
     }
 
     /// Returns the data that the primitives share.
-    pub fn shared(&self) -> &'a [P::Shared] {
-        self.standing.shared
+    pub fn shared(&self) -> SharedSlices<'a, P> {
+        self.standing.shared.slices()
     }
 
     /// Returns the view that kernels query.

@@ -8,7 +8,7 @@ use thiserror::Error;
 use super::build::MAX_PRIMITIVES;
 use super::view::{Branches, Part, Trees};
 use super::{Bvh, Node, SceneView, View};
-use crate::geometry::{Hit, Kinds, Primitive};
+use crate::geometry::{Hit, Kinds, Primitive, Shared, SharedSlices, SharedStore};
 use crate::machine::{Capture, Machine, Owner, Parameter, Resource};
 
 /// List of trees over primitives of one type, queried as one scene: moving and static geometry, or
@@ -118,8 +118,8 @@ impl<'a, P: Primitive> BvhList<'a, P> {
     }
 
     /// Returns the data that the primitives of all trees share.
-    pub fn shared(&self) -> &'a [P::Shared] {
-        self.trees.shared
+    pub fn shared(&self) -> SharedSlices<'a, P> {
+        self.trees.shared.slices()
     }
 
     pub(super) fn into_trees(self) -> Trees<'a, P, P::Shared> {
@@ -159,27 +159,28 @@ impl<P: Primitive> Parameter for BvhList<'_, P> {
 }
 
 /// Returns the data that the primitives of these trees share; empty trees are compatible with any.
-fn shared_by_all<'a, P: Primitive>(trees: &[Bvh<'a, P>]) -> Result<&'a [P::Shared], ListError> {
-    let mut found: Option<(usize, &'a [P::Shared])> = None;
+fn shared_by_all<'a, P: Primitive>(
+    trees: &[Bvh<'a, P>],
+) -> Result<SharedStore<'a, P::Shared>, ListError> {
+    let mut found: Option<(usize, SharedStore<'a, P::Shared>)> = None;
     for (tree, bvh) in trees.iter().enumerate().filter(|(_, bvh)| !bvh.primitives().is_empty()) {
-        let shared = bvh.shared();
-        let (first, slice) = *found.get_or_insert((tree, shared));
-        let is_same = core::ptr::eq(slice, shared) || slice.is_empty() && shared.is_empty();
-        if !is_same {
+        let shared = bvh.tree.shared;
+        let (first, before) = *found.get_or_insert((tree, shared));
+        if !before.is_same(shared) {
             return Err(ListError::SharesAnother { first, tree });
         }
     }
-    Ok(found.map_or(&[], |(_, slice)| slice))
+    Ok(found.map_or(SharedStore::NONE, |(_, shared)| shared))
 }
 
 /// Returns the part that holds the primitive `index`; the first one if none does.
 #[inline(always)]
-pub(super) fn tree_of<T, S>(parts: &[Part<'_, T, S>], index: u32) -> usize {
+pub(super) fn tree_of<T, S: Shared>(parts: &[Part<'_, T, S>], index: u32) -> usize {
     parts.partition_point(|part| part.first <= index).saturating_sub(1)
 }
 
 /// Iterates over the trees of a list, each with the number of nodes and indices before it.
-fn trees<'p, 'a, T, S>(
+fn trees<'p, 'a, T, S: Shared>(
     parts: &'p [Part<'a, T, S>],
 ) -> impl Iterator<Item = (&'p Part<'a, T, S>, Branches<'a>, [u32; 2])> {
     let mut before = [0; 2];
@@ -192,12 +193,12 @@ fn trees<'p, 'a, T, S>(
 }
 
 /// Returns the root indices in the nodes of all trees.
-pub(super) fn roots<T, S>(parts: &[Part<'_, T, S>]) -> impl Iterator<Item = u32> {
+pub(super) fn roots<T, S: Shared>(parts: &[Part<'_, T, S>]) -> impl Iterator<Item = u32> {
     trees(parts).filter(|(_, tree, _)| !tree.nodes.is_empty()).map(|(_, _, [root, _])| root)
 }
 
 /// Returns the nodes of all trees in one array.
-pub(super) fn nodes<'a, T, S>(parts: &[Part<'a, T, S>]) -> Cow<'a, [u8]> {
+pub(super) fn nodes<'a, T, S: Shared>(parts: &[Part<'a, T, S>]) -> Cow<'a, [u8]> {
     if let [part] = parts
         && let Some(tree) = part.tree()
     {
@@ -213,7 +214,7 @@ pub(super) fn nodes<'a, T, S>(parts: &[Part<'a, T, S>]) -> Cow<'a, [u8]> {
 }
 
 /// Returns the index lists of all trees in one array, with ids that count through the list.
-pub(super) fn indices<'a, T, S>(parts: &[Part<'a, T, S>]) -> Cow<'a, [u8]> {
+pub(super) fn indices<'a, T, S: Shared>(parts: &[Part<'a, T, S>]) -> Cow<'a, [u8]> {
     if let [part @ Part { first: 0, .. }] = parts
         && let Some(tree) = part.tree()
     {

@@ -2,7 +2,7 @@
 
 use super::ray_query::primitive_at;
 use super::{Joined, PrimitiveScene, RayQueryOn, RecordQuery, SceneView};
-use crate::geometry::{HitOn, Primitive, RayOn};
+use crate::geometry::{HitOn, Primitive, RayOn, SharedViews};
 use crate::machine::{A3, B, Machine, Method, On, Slice, V3, Value, name};
 
 /// Implements the queries of a type that has a view.
@@ -152,7 +152,7 @@ macro_rules! primitives {
 
         #[diagnostic::do_not_recommend]
         impl<'a, $($g)*, M: Machine> Method<{ name("shared") }, M, ()> for $t {
-            type Output = Slice<'a, <$p as Primitive>::Shared>;
+            type Output = SharedViews<'a, $p>;
 
             #[inline(always)]
             fn call(self, _: &M, (): ()) -> Self::Output {

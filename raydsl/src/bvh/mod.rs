@@ -100,7 +100,7 @@ use wide::WideQueries;
 #[cfg(feature = "counts")]
 pub use wide::counts::Counts;
 
-use crate::geometry::{Aabb, Kinds, Primitive};
+use crate::geometry::{Aabb, IntoShared, Kinds, Primitive, Shared, SharedSlices};
 use crate::machine::{Capture, Machine, Owner, Parameter, Resource};
 
 /// Bounding volume hierarchy over primitives that the application owns.
@@ -175,10 +175,10 @@ impl<'a, P: Primitive> Bvh<'a, P> {
     /// As [`Bvh::build_with`]. An index without a vertex makes bounds that are not finite.
     pub fn build_sharing(
         prims: &'a [P],
-        shared: &'a [P::Shared],
+        shared: impl IntoShared<'a, P::Shared>,
         config: &BuildConfig,
     ) -> Result<Self, BuildError> {
-        Self::build_told(prims, shared, config, None, None)
+        Self::build_told(prims, shared.into_shared(), config, None, None)
     }
 
     /// Builds a wide tree, with copies of the primitives in its leaves, for scenes with many
@@ -221,10 +221,10 @@ impl<'a, P: Primitive> Bvh<'a, P> {
     /// As [`Bvh::build_sharing`].
     pub fn build_wide(
         prims: &'a [P],
-        shared: &'a [P::Shared],
+        shared: impl IntoShared<'a, P::Shared>,
         config: &BuildConfig,
     ) -> Result<Self, BuildError> {
-        Self::build_told(prims, shared, config, None, wide::queries())
+        Self::build_told(prims, shared.into_shared(), config, None, wide::queries())
     }
 
     /// Builds a wide tree as [`Bvh::build_wide`], with an observer as [`Bvh::build_observed`].
@@ -234,11 +234,11 @@ impl<'a, P: Primitive> Bvh<'a, P> {
     /// As [`Bvh::build_observed`].
     pub fn build_wide_observed(
         prims: &'a [P],
-        shared: &'a [P::Shared],
+        shared: impl IntoShared<'a, P::Shared>,
         config: &BuildConfig,
         mut observer: impl FnMut(f64) -> ControlFlow<()> + Send,
     ) -> Result<Self, BuildError> {
-        Self::build_told(prims, shared, config, Some(&mut observer), wide::queries())
+        Self::build_told(prims, shared.into_shared(), config, Some(&mut observer), wide::queries())
     }
 
     /// Builds a tree as [`Bvh::build_sharing`] does, and reports progress to `observer`, from 0 to
@@ -274,16 +274,16 @@ impl<'a, P: Primitive> Bvh<'a, P> {
     /// As [`Bvh::build_sharing`], and [`BuildError::Cancelled`] if the observer breaks off.
     pub fn build_observed(
         prims: &'a [P],
-        shared: &'a [P::Shared],
+        shared: impl IntoShared<'a, P::Shared>,
         config: &BuildConfig,
         mut observer: impl FnMut(f64) -> ControlFlow<()> + Send,
     ) -> Result<Self, BuildError> {
-        Self::build_told(prims, shared, config, Some(&mut observer), None)
+        Self::build_told(prims, shared.into_shared(), config, Some(&mut observer), None)
     }
 
     fn build_told(
         prims: &'a [P],
-        shared: &'a [P::Shared],
+        shared: SharedSlices<'a, P>,
         config: &BuildConfig,
         observer: Option<&mut build::Observer>,
         queries: Option<WideQueries<P, P::Shared>>,
@@ -295,11 +295,12 @@ impl<'a, P: Primitive> Bvh<'a, P> {
             );
         }
         let source = build::Primitives { prims, shared };
+        let stored = P::Shared::store(shared);
         let queries = queries.filter(|_| prims.len() >= config.min_wide_size as usize);
         let settings = Settings { config: *config, is_wide: queries.is_some() };
         let tree = build::build_watched(&source, prims.len(), &settings, observer)?;
         let wide =
-            queries.map(|queries| (queries.collapse)(&tree, prims, shared, config.traversal));
+            queries.map(|queries| (queries.collapse)(&tree, prims, stored, config.traversal));
         let own = Owned {
             structure: Structure::of(tree, wide),
             config: *config,
@@ -307,7 +308,7 @@ impl<'a, P: Primitive> Bvh<'a, P> {
             version: 0,
             built_cost: None,
         };
-        Ok(Self { tree: Tree { prims, shared, own, kinds: Kinds::of(prims), queries } })
+        Ok(Self { tree: Tree { prims, shared: stored, own, kinds: Kinds::of(prims), queries } })
     }
 
     /// Returns the primitives, which the application owns.
@@ -316,8 +317,8 @@ impl<'a, P: Primitive> Bvh<'a, P> {
     }
 
     /// Returns the shared data of the primitives, which the application owns.
-    pub fn shared(&self) -> &'a [P::Shared] {
-        self.tree.shared
+    pub fn shared(&self) -> SharedSlices<'a, P> {
+        self.tree.shared.slices()
     }
 
     /// Returns whether the tree is wide, as [`Bvh::build_wide`] makes it.

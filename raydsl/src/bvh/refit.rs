@@ -8,7 +8,7 @@ use thiserror::Error;
 use super::view::Tree;
 use super::wide::WideQueries;
 use super::{BuildError, Bvh, Owned, stats};
-use crate::geometry::{Kinds, Primitive};
+use crate::geometry::{IntoShared, Kinds, Primitive, Shared};
 
 /// Tree without its primitives, which the application may change meanwhile.
 ///
@@ -89,7 +89,7 @@ impl<P: Primitive> Bvh<'_, P> {
     pub fn refit_sharing<'b>(
         self,
         prims: &'b [P],
-        shared: &'b [P::Shared],
+        shared: impl IntoShared<'b, P::Shared>,
     ) -> Result<Bvh<'b, P>, RefitError> {
         self.detach().refit_sharing(prims, shared)
     }
@@ -137,23 +137,25 @@ impl<P: Primitive> DetachedBvh<P> {
     pub fn refit_sharing<'b>(
         self,
         prims: &'b [P],
-        shared: &'b [P::Shared],
+        shared: impl IntoShared<'b, P::Shared>,
     ) -> Result<Bvh<'b, P>, RefitError> {
         let Self { own, count: before, queries } = self;
+        let shared = shared.into_shared();
+        let stored = P::Shared::store(shared);
         if prims.len() != before {
             return Err(RefitError::CountChanged { before, now: prims.len() });
         }
         let cost = || stats::sah_cost(&own.structure.binary().nodes, &own.config);
         let built_cost = own.built_cost.unwrap_or_else(cost);
         let traversal = own.config.traversal;
-        let collapse = |tree: &_| Some((queries?.collapse)(tree, prims, shared, traversal));
+        let collapse = |tree: &_| Some((queries?.collapse)(tree, prims, stored, traversal));
         let own = Owned {
             structure: own.structure.refit(prims, shared, collapse)?,
             version: own.version.wrapping_add(1),
             built_cost: Some(built_cost),
             ..own
         };
-        Ok(Bvh { tree: Tree { prims, shared, own, kinds: Kinds::of(prims), queries } })
+        Ok(Bvh { tree: Tree { prims, shared: stored, own, kinds: Kinds::of(prims), queries } })
     }
 
     /// Returns the number of primitives of the tree.

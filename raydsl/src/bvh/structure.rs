@@ -7,7 +7,7 @@ use super::build::{self, Tree};
 use super::view::Branches;
 use super::wide::Wide;
 use super::{BuildError, Traversal};
-use crate::geometry::{Aabb, Primitive};
+use crate::geometry::{Aabb, Primitive, SharedSlices};
 
 /// The binary tree, the wide tree, or both.
 #[derive(Debug)]
@@ -102,7 +102,7 @@ impl Structure {
     pub(super) fn refit<P: Primitive>(
         mut self,
         prims: &[P],
-        shared: &[P::Shared],
+        shared: SharedSlices<'_, P>,
         collapse: impl FnOnce(&Tree) -> Option<Wide>,
     ) -> Result<Self, BuildError> {
         self.binary();

@@ -67,7 +67,7 @@ struct Candidate<'c, 'a, P: Primitive> {
 impl<P: Primitive> Candidate<'_, '_, P> {
     #[inline(always)]
     fn intersect(&self) -> P::Hit {
-        self.part.prims[self.id as usize].intersect(*self.ray, self.part.shared)
+        self.part.prims[self.id as usize].intersect(*self.ray, self.part.shared.slices())
     }
 
     /// Returns the hit with the ids of its primitive and its instance.
@@ -150,7 +150,7 @@ fn nearest_fallback<P: Primitive>(prims: &SceneView<'_, P>, ray: Ray) -> Hit {
 pub(super) fn complete<P: Primitive>(prims: &SceneView<'_, P>, ray: Ray, hit: Hit) -> P::Hit {
     let again = || {
         let ray = prims.local_ray(hit.inst_id, ray);
-        prims.get(hit.prim_id).intersect(ray, prims.shared().elements())
+        prims.get(hit.prim_id).intersect(ray, prims.stored().slices())
     };
     P::Hit::complete(hit, again)
 }

@@ -11,8 +11,8 @@ use super::view::Branches;
 use super::{
     CountedHit, CountedHitOn, Part, Placed, RecordOn, RecordedQueries, SceneView, traverse,
 };
-use crate::geometry::{Hit, HitOn, HitRecord, Primitive, Ray, RayOn};
-use crate::machine::{B, Entered, F, Lanes, Packet, Place, Slice, Type, U, V3, Value, op};
+use crate::geometry::{Hit, HitOn, HitRecord, Primitive, Ray, RayOn, SharedViews};
+use crate::machine::{B, Entered, F, Lanes, Packet, Place, Type, U, V3, Value, op};
 use crate::run::{Lanes4, Lanes8, Lanes16};
 
 /// The machine of the inner loops: its kernels are inlined, so that values stay in registers.
@@ -48,7 +48,7 @@ struct Best<L: Lanes> {
 struct Candidate<'c, 'a, L: Lanes, P: Primitive> {
     part: &'c Part<'a, P, P::Shared>,
     ray: &'c RayOn<Packet<L>>,
-    shared: Slice<'c, P::Shared>,
+    shared: SharedViews<'a, P>,
     inst: u32,
     /// The id of the primitive in its part.
     id: u32,

@@ -9,7 +9,7 @@ use super::instances::Placed;
 use super::structure::Structure;
 use super::wide::{Wide, WideQueries};
 use super::{Accelerator, Node, Owned, list};
-use crate::geometry::{Kinds, Primitive, Ray};
+use crate::geometry::{Kinds, Names, Primitive, Ray, Shared, SharedStore};
 use crate::machine::{
     Data, Description, Field, Leaves, Machine, Owner, Resource, Schema, Slice, Type, Value,
     borrowed_key, bytes_of, read_in_place, wgsl::BufferKey,
@@ -32,13 +32,13 @@ pub(crate) mod buffers {
     pub(crate) const PRIMITIVES: u32 = 0;
     pub(crate) const NODES: u32 = 1;
     pub(crate) const INDICES: u32 = 2;
-    pub(crate) const SHARED: u32 = 3;
     pub(crate) const ROOTS: u32 = 4;
     pub(crate) const PLACES: u32 = 5;
     pub(crate) const WIDE_NODES: u32 = 6;
     pub(crate) const LEAVES: u32 = 7;
     pub(crate) const LEAF_IDS: u32 = 8;
     pub(crate) const WIDE_ROOTS: u32 = 9;
+    pub(crate) const SHARED: [u32; 3] = [3, 10, 11];
 }
 
 /// The nodes of a tree and its index list.
@@ -58,31 +58,31 @@ pub(crate) enum Finder<'a> {
 }
 
 /// Primitives, their shared data, and the structure that finds them.
-pub(crate) struct Part<'a, T, S> {
+pub(crate) struct Part<'a, T, S: Shared> {
     pub(crate) prims: &'a [T],
-    pub(crate) shared: &'a [S],
+    pub(crate) shared: SharedStore<'a, S>,
     pub(crate) finder: Finder<'a>,
     /// The id of its first primitive, among those of a list.
     pub(crate) first: u32,
 }
 
-impl<T, S> core::fmt::Debug for Part<'_, T, S> {
+impl<T, S: Shared> core::fmt::Debug for Part<'_, T, S> {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         let primitives = self.prims.len();
         f.debug_struct("Part").field("primitives", &primitives).finish_non_exhaustive()
     }
 }
 
-impl<T, S> Clone for Part<'_, T, S> {
+impl<T, S: Shared> Clone for Part<'_, T, S> {
     #[inline(always)]
     fn clone(&self) -> Self {
         *self
     }
 }
 
-impl<T, S> Copy for Part<'_, T, S> {}
+impl<T, S: Shared> Copy for Part<'_, T, S> {}
 
-impl<'a, T, S> Part<'a, T, S> {
+impl<'a, T, S: Shared> Part<'a, T, S> {
     /// Returns the binary tree, if there are trees; expanded from the wide one if necessary.
     #[inline(always)]
     pub(crate) fn tree(&self) -> Option<Branches<'a>> {
@@ -112,16 +112,16 @@ impl<'a, T, S> Part<'a, T, S> {
 
 /// A tree, its primitives and their shared data.
 #[derive(Debug)]
-pub(crate) struct Tree<'a, T, S> {
+pub(crate) struct Tree<'a, T, S: Shared> {
     pub(crate) prims: &'a [T],
-    pub(crate) shared: &'a [S],
+    pub(crate) shared: SharedStore<'a, S>,
     pub(super) own: Owned,
     pub(super) kinds: Kinds,
     /// The traversals of wide trees, if the tree is wide.
     pub(super) queries: Option<WideQueries<T, S>>,
 }
 
-impl<T, S> Tree<'_, T, S> {
+impl<T, S: Shared> Tree<'_, T, S> {
     #[inline(always)]
     pub(super) fn part(&self) -> Part<'_, T, S> {
         let finder = Finder::Trees(&self.own.structure);
@@ -131,9 +131,9 @@ impl<T, S> Tree<'_, T, S> {
 
 /// The trees of a list.
 #[derive(Debug)]
-pub(crate) struct Trees<'a, T, S> {
+pub(crate) struct Trees<'a, T, S: Shared> {
     pub(super) parts: Vec<Part<'a, T, S>>,
-    pub(super) shared: &'a [S],
+    pub(super) shared: SharedStore<'a, S>,
     pub(super) owner: Owner,
     pub(super) kinds: Kinds,
     /// The traversals of wide trees, if all trees are wide.
@@ -141,15 +141,15 @@ pub(crate) struct Trees<'a, T, S> {
 }
 
 /// Primitives under an application-defined acceleration structure.
-pub(crate) struct Standing<'a, T, S> {
+pub(crate) struct Standing<'a, T, S: Shared> {
     pub(super) prims: &'a [T],
-    pub(super) shared: &'a [S],
+    pub(super) shared: SharedStore<'a, S>,
     pub(super) accelerator: Box<dyn Accelerator + 'a>,
     pub(super) owner: Owner,
     pub(super) kinds: Kinds,
 }
 
-impl<T, S> Standing<'_, T, S> {
+impl<T, S: Shared> Standing<'_, T, S> {
     #[inline(always)]
     fn part(&self) -> Part<'_, T, S> {
         let finder = Finder::Accelerator(&*self.accelerator);
@@ -158,7 +158,7 @@ impl<T, S> Standing<'_, T, S> {
 }
 
 /// The kind of a scene.
-enum Scene<'a, T, S> {
+enum Scene<'a, T, S: Shared> {
     Slice(Slice<'a, T>),
     Tree(&'a Tree<'a, T, S>),
     List(&'a Trees<'a, T, S>),
@@ -170,7 +170,7 @@ enum Scene<'a, T, S> {
 /// application-defined structure. A host value on every machine.
 ///
 /// `S` is the type of the shared data of primitives; see [`Primitive::Shared`].
-pub struct View<'a, T, S = ()> {
+pub struct View<'a, T, S: Shared = ()> {
     scene: Scene<'a, T, S>,
     name: &'static str,
 }
@@ -178,31 +178,31 @@ pub struct View<'a, T, S = ()> {
 /// The view of primitives and of their shared data.
 pub type SceneView<'a, P> = View<'a, P, <P as Primitive>::Shared>;
 
-impl<T, S> Clone for Scene<'_, T, S> {
+impl<T, S: Shared> Clone for Scene<'_, T, S> {
     #[inline(always)]
     fn clone(&self) -> Self {
         *self
     }
 }
 
-impl<T, S> Copy for Scene<'_, T, S> {}
+impl<T, S: Shared> Copy for Scene<'_, T, S> {}
 
-impl<T, S> core::fmt::Debug for View<'_, T, S> {
+impl<T, S: Shared> core::fmt::Debug for View<'_, T, S> {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         f.debug_struct("View").field("name", &self.name).field("len", &self.len()).finish()
     }
 }
 
-impl<T, S> Clone for View<'_, T, S> {
+impl<T, S: Shared> Clone for View<'_, T, S> {
     #[inline(always)]
     fn clone(&self) -> Self {
         *self
     }
 }
 
-impl<T, S> Copy for View<'_, T, S> {}
+impl<T, S: Shared> Copy for View<'_, T, S> {}
 
-impl<'a, T, S> View<'a, T, S> {
+impl<'a, T, S: Shared> View<'a, T, S> {
     #[inline(always)]
     pub(crate) fn slice(prims: Slice<'a, T>) -> Self {
         Self { name: prims.source_name(), scene: Scene::Slice(prims) }
@@ -300,7 +300,7 @@ impl<'a, T, S> View<'a, T, S> {
         match self.scene {
             Scene::Slice(prims) => (i == 0).then_some(Part {
                 prims: prims.elements(),
-                shared: &[],
+                shared: SharedStore::NONE,
                 finder: Finder::Nothing,
                 first: 0,
             }),
@@ -311,18 +311,30 @@ impl<'a, T, S> View<'a, T, S> {
         }
     }
 
-    /// Returns the shared data of the primitives.
+    /// Returns the shared data of the primitives: a slice, or a tuple of slices of an enum whose
+    /// kinds share [several](crate::geometry::Several).
     #[inline(always)]
-    pub fn shared(&self) -> Slice<'a, S> {
-        let shared = match self.scene {
-            Scene::Slice(_) => &[],
+    pub fn shared(&self) -> S::Views<'a> {
+        S::views(self.stored(), &Names::new(self.name, &|place| self.shared_key(place)))
+    }
+
+    /// Returns the shared data as the scene has them.
+    #[inline(always)]
+    pub(crate) fn stored(&self) -> SharedStore<'a, S> {
+        match self.scene {
+            Scene::Slice(_) => SharedStore::NONE,
             Scene::Tree(tree) => tree.shared,
             Scene::List(trees) => trees.shared,
             Scene::Instances(placed) => placed.trees.shared,
             Scene::Standing(standing) => standing.shared,
-        };
-        let key = (!self.is_slice()).then(|| self.key_of(buffers::SHARED));
-        Slice::owned(shared, key, self.name).suffixed("shared")
+        }
+    }
+
+    /// Returns the key of the slice of shared data at `place`.
+    #[inline(always)]
+    fn shared_key(&self, place: u32) -> Option<BufferKey> {
+        let part = buffers::SHARED[place as usize];
+        (!self.is_slice()).then(|| self.key_of(part))
     }
 
     /// Returns the elements of a slice, or of the slice under a tree.
@@ -382,7 +394,7 @@ impl<'a, T, S> View<'a, T, S> {
         };
         // Refitting keeps the order of the primitives, and moved instances keep the primitives.
         let stays = match self.scene {
-            Scene::Instances(_) => part == buffers::PRIMITIVES || part == buffers::SHARED,
+            Scene::Instances(_) => part == buffers::PRIMITIVES || buffers::SHARED.contains(&part),
             _ => part == buffers::INDICES,
         };
         let version = if stays { 0 } else { version };
@@ -421,7 +433,7 @@ impl<'a, T, S> View<'a, T, S> {
     }
 }
 
-impl<T: Type, S> Data for View<'_, T, S> {
+impl<T: Type, S: Shared> Data for View<'_, T, S> {
     type Element = T;
 
     #[inline(always)]
@@ -486,7 +498,7 @@ impl<P: Primitive> SceneView<'_, P> {
     }
 }
 
-impl<T: Type, S: Type> Resource for View<'_, T, S> {
+impl<T: Type, S: Shared> Resource for View<'_, T, S> {
     fn bytes(&self, key: BufferKey) -> Option<Cow<'_, [u8]>> {
         let parts: Vec<_> = self.parts().collect();
         if key == self.key() {
@@ -508,12 +520,14 @@ impl<T: Type, S: Type> Resource for View<'_, T, S> {
                 None => list::indices(&parts),
             }),
             buffers::PLACES => self.placed().map(Placed::place_bytes),
-            buffers::SHARED => Some(Cow::Owned(bytes_of(self.shared().elements()))),
             buffers::ROOTS => {
                 let roots: Vec<u32> = list::roots(&parts).collect();
                 Some(Cow::Owned(bytemuck::cast_slice(&roots).to_vec()))
             }
-            part => self.wide_bytes(part),
+            part => match buffers::SHARED.iter().position(|shared| *shared == part) {
+                Some(place) => self.stored().bytes(place as u32).map(Cow::Owned),
+                None => self.wide_bytes(part),
+            },
         }
     }
 
@@ -527,7 +541,8 @@ impl<T: Type, S: Type> Resource for View<'_, T, S> {
                 let is_list = self.is_list();
                 out.fact(1 + u64::from(is_list));
                 out.data(self);
-                out.data(&self.shared());
+                self.stored()
+                    .describe(&Names::new(self.name, &|place| self.shared_key(place)), out);
                 let name = Data::name(self);
                 let (nodes, indices) = self.tree_len();
                 let (of_nodes, of_indices) = (buffers::NODES, buffers::INDICES);
@@ -549,7 +564,7 @@ impl<T: Type, S: Type> Resource for View<'_, T, S> {
     }
 }
 
-impl<M: Machine, T, S> Value<M> for View<'_, T, S> {
+impl<M: Machine, T, S: Shared> Value<M> for View<'_, T, S> {
     const SCHEMA: &'static Schema = &Schema::Host;
 
     #[inline(always)]
@@ -581,4 +596,4 @@ impl<M: Machine, T, S> Value<M> for View<'_, T, S> {
     }
 }
 
-read_in_place!([T: Type, S: Type] View<'_, T, S>);
+read_in_place!([T: Type, S: Shared] View<'_, T, S>);

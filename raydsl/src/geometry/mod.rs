@@ -19,6 +19,7 @@ pub mod quad;
 mod ray;
 #[doc(alias = "parallelogram")]
 pub mod rectangle;
+mod shared;
 pub(crate) mod slabs;
 pub mod sphere;
 mod surface;
@@ -31,8 +32,12 @@ pub use affine::transform_ray;
 pub use hit::{Hit, HitOn, HitRecord};
 pub use lacking::Lacking;
 pub use origin::offset_origin;
-pub use primitive::{Kinds, Primitive, SharedAs, shared_of_kind, shared_slice};
+pub use primitive::{Kinds, Primitive};
 pub use ray::{Ray, RayOn};
+pub use shared::{
+    IntoShared, Names, Several, Shared, SharedAmong, SharedAs, SharedSlices, SharedStore,
+    SharedViews, shared_among, shared_of_kind, shared_views,
+};
 pub(crate) use slabs::finite_inverse;
 pub use surface::{SurfacePoint, SurfacePointOn};
 pub use triangle::{IndexedTriangle, Triangle};

@@ -1,8 +1,9 @@
 //! The primitive trait.
 
+use super::shared::{Shared, SharedSlices, SharedViews};
 use super::{Aabb, HitRecord, Ray, RayOn};
 pub use crate::machine::Kinds;
-use crate::machine::{Machine, Slice, Type};
+use crate::machine::{Machine, Type};
 
 impl Kinds {
     /// Returns the kinds of these primitives.
@@ -25,20 +26,21 @@ pub trait Primitive: Type {
     type Hit: HitRecord;
 
     /// Data shared by all primitives of a scene: the elements of a second slice, such as the
-    /// vertices of indexed triangles. `()` if there is none.
-    type Shared: Type;
+    /// vertices of indexed triangles. `()` if there is none; [`Several`](super::Several) for an enum
+    /// whose kinds share different data.
+    type Shared: Shared;
 
-    /// `Self::Shared`, or `T` if there is none: what this kind and others, which share a `T`, share
+    /// `Self::Shared`, or `S` if there is none: what this kind and others, which share an `S`, share
     /// in an enum of both.
     #[doc(hidden)]
-    type SharedOr<T: Type>: Type;
+    type SharedOr<S: Shared>: Shared;
 
     /// Returns the data as those of an enum whose other kinds share a `U`; `other` converts theirs.
     #[doc(hidden)]
-    fn map_shared<'a, T: Type, U: Type>(
-        all: Slice<'a, Self::SharedOr<T>>,
-        other: impl FnOnce(Slice<'a, T>) -> Slice<'a, U>,
-    ) -> Slice<'a, Self::SharedOr<U>>;
+    fn map_shared<'a, S: Shared, U: Shared>(
+        all: <Self::SharedOr<S> as Shared>::Views<'a>,
+        other: impl FnOnce(S::Views<'a>) -> U::Views<'a>,
+    ) -> <Self::SharedOr<U> as Shared>::Views<'a>;
 
     /// Error bound of accepted hits, relative to the distance between the ray's origin and the
     /// farthest corner of the scene: the error of `t`, and the distance at which the ray may pass
@@ -64,10 +66,10 @@ pub trait Primitive: Type {
 
     /// Intersects `ray` with the primitive. It sees the ray's own `t_min` and `t_max` and need not
     /// heed them: traversal compares.
-    fn intersect(&self, ray: Ray, shared: &[Self::Shared]) -> Self::Hit;
+    fn intersect(&self, ray: Ray, shared: SharedSlices<'_, Self>) -> Self::Hit;
 
     /// Returns a box around the whole primitive.
-    fn get_bounds(&self, shared: &[Self::Shared]) -> Aabb;
+    fn get_bounds(&self, shared: SharedSlices<'_, Self>) -> Aabb;
 
     /// Returns boxes around the parts of the primitive below and above the plane `axis = at`; a box
     /// that is not valid means an empty part. `axis` is 0, 1 or 2.
@@ -77,7 +79,12 @@ pub trait Primitive: Type {
     /// [`Primitive::SLACK`] of one of them: of the primitive itself, where the boxes are tight. It
     /// must be a pure function. The default cuts the bounds, which is correct for every shape and
     /// tight for boxes.
-    fn split_primitive(&self, axis: usize, at: f32, shared: &[Self::Shared]) -> (Aabb, Aabb) {
+    fn split_primitive(
+        &self,
+        axis: usize,
+        at: f32,
+        shared: SharedSlices<'_, Self>,
+    ) -> (Aabb, Aabb) {
         self.get_bounds(shared).split(axis, at)
     }
 
@@ -87,7 +94,7 @@ pub trait Primitive: Type {
         m: &M,
         prim: Self::On<M>,
         ray: RayOn<M>,
-        shared: Slice<'_, Self::Shared>,
+        shared: SharedViews<'_, Self>,
     ) -> <Self::Hit as Type>::On<M>;
 
     /// Number of kinds of the type: more than one for an enum.
@@ -108,7 +115,7 @@ pub trait Primitive: Type {
         m: &M,
         prim: &Self,
         ray: RayOn<M>,
-        shared: Slice<'_, Self::Shared>,
+        shared: SharedViews<'_, Self>,
     ) -> <Self::Hit as Type>::On<M> {
         Self::intersect_on(m, Self::splat(m, *prim), ray, shared)
     }
@@ -121,46 +128,8 @@ pub trait Primitive: Type {
         _kinds: Kinds,
         prim: Self::On<M>,
         ray: RayOn<M>,
-        shared: Slice<'_, Self::Shared>,
+        shared: SharedViews<'_, Self>,
     ) -> <Self::Hit as Type>::On<M> {
         Self::intersect_on(m, prim, ray, shared)
     }
-}
-
-/// `Self` is `T`: the data that a kind of an enum shares are those that the other kinds share.
-#[diagnostic::on_unimplemented(
-    message = "the kinds of a primitive share `{Self}` and `{T}`: a tree has one slice of shared \
-               data",
-    label = "its primitives share `{Self}`, those of another kind `{T}`",
-    note = "give each kind a tree of its own, and put the trees into a struct of scenes: \
-            `#[derive(RayQuery)] struct Scenes<'a> {{ .. }}`, or `#[derive(Scene)]`"
-)]
-#[doc(hidden)]
-pub trait SharedAs<T: Type>: Type {
-    /// Returns the same slice.
-    fn of(all: Slice<'_, T>) -> Slice<'_, Self>;
-}
-
-impl<T: Type> SharedAs<T> for T {
-    #[inline(always)]
-    fn of(all: Slice<'_, T>) -> Slice<'_, T> {
-        all
-    }
-}
-
-/// Returns what the primitives of kind `K` share, of what an enum's share.
-#[doc(hidden)]
-#[inline(always)]
-pub fn shared_of_kind<K: Primitive, T: Type>(all: Slice<'_, T>) -> Slice<'_, K::SharedOr<()>>
-where
-    K::SharedOr<T>: SharedAs<T>,
-{
-    K::map_shared(<K::SharedOr<T> as SharedAs<T>>::of(all), |_| shared_slice(&[]))
-}
-
-/// Returns shared data of the host as a slice of a machine.
-#[doc(hidden)]
-#[inline(always)]
-pub fn shared_slice<T: Type>(all: &[T]) -> Slice<'_, T> {
-    Slice::new(all, "shared")
 }

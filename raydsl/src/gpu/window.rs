@@ -8,7 +8,7 @@ use super::device::{Gpu, lock};
 use super::error::GpuError;
 use super::{Context, GpuScheduler};
 use crate::bvh::{Bvh, BvhList, Instances, View};
-use crate::geometry::Primitive;
+use crate::geometry::{Primitive, Shared};
 use crate::machine::wgsl::BufferKey;
 use crate::machine::{Data, Slice, Type, borrowed_key, stride};
 
@@ -66,7 +66,7 @@ impl<T: Type, const N: usize> OnHost for [T; N] {
     }
 }
 
-impl<T: Type, S: Type> OnHost for View<'_, T, S> {
+impl<T: Type, S: Shared> OnHost for View<'_, T, S> {
     type Element = T;
 
     fn buffer(&self) -> (BufferKey, usize) {

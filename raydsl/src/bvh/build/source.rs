@@ -1,6 +1,6 @@
 //! Builder input: primitives as boxes.
 
-use crate::geometry::{Aabb, Primitive};
+use crate::geometry::{Aabb, Primitive, SharedSlices};
 
 /// Primitives as seen by the builder: boxes, and boxes of their parts.
 ///
@@ -31,7 +31,7 @@ impl<F: Fn(usize) -> Aabb + Sync> Source for Boxes<F> {
 /// Slice of primitives and their shared data.
 pub(in crate::bvh) struct Primitives<'a, P: Primitive> {
     pub(in crate::bvh) prims: &'a [P],
-    pub(in crate::bvh) shared: &'a [P::Shared],
+    pub(in crate::bvh) shared: SharedSlices<'a, P>,
 }
 
 impl<P: Primitive> Source for Primitives<'_, P> {

@@ -3,6 +3,7 @@
 //! The nodes of the groups follow those of the trees. Leaves of a group hold indices into a table
 //! of places instead of primitive ids, and mark them with the highest bit.
 
+use crate::geometry::Shared;
 use std::borrow::Cow;
 
 use bytemuck::cast_slice;
@@ -51,7 +52,7 @@ pub(crate) const PLACE_SCHEMA: &Schema = &Schema::Struct {
     size: 72,
 };
 
-impl<T, S> Placed<'_, T, S> {
+impl<T, S: Shared> Placed<'_, T, S> {
     /// Returns the number of nodes and indices of the groups.
     pub(crate) fn group_len(&self) -> (u64, u64) {
         self.groups.iter().map(Placing::branches).fold((0, 0), |(nodes, indices), tree| {

@@ -16,7 +16,7 @@ pub(crate) use descent::Descent;
 pub(crate) use packet_descent::PacketDescent;
 pub(crate) use placed::{Placed, Placing, STACK, Target};
 
-use crate::geometry::{Aabb, Hit, Primitive};
+use crate::geometry::{Aabb, Hit, Primitive, SharedSlices};
 use crate::machine::{Capture, Machine, Parameter, Resource};
 
 /// Maximum number of levels of instances: a group of groups of trees has two.
@@ -366,8 +366,8 @@ impl<'a, P: Primitive> Instances<'a, P> {
     }
 
     /// Returns the data that the primitives of all trees share.
-    pub fn shared(&self) -> &'a [P::Shared] {
-        self.placed.trees.shared
+    pub fn shared(&self) -> SharedSlices<'a, P> {
+        self.placed.trees.shared.slices()
     }
 
     /// Returns the view that kernels query.

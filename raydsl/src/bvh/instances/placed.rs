@@ -9,7 +9,7 @@ use crate::bvh::traverse_packet::InstanceTable;
 use crate::bvh::view::{Branches, Trees};
 use crate::bvh::{Node, stats};
 use crate::geometry::affine::{self, Inverted};
-use crate::geometry::{Aabb, Ray, transform_ray};
+use crate::geometry::{Aabb, Ray, Shared, transform_ray};
 
 /// Maximum stack entries of one ray, on all levels of instances together.
 pub(crate) const STACK: usize = 128;
@@ -19,7 +19,7 @@ const EVERYTHING: f64 = 16.0;
 
 /// Trees and the groups in which they are placed. Rays are traced against the last group.
 #[derive(Debug)]
-pub(crate) struct Placed<'a, T, S> {
+pub(crate) struct Placed<'a, T, S: Shared> {
     pub(crate) trees: Trees<'a, T, S>,
     /// Padding of boxes in the trees.
     pub(crate) padding: Padding,
@@ -99,7 +99,7 @@ struct Seen {
 
 impl Placing {
     /// Builds the tree over these instances.
-    pub(super) fn build<T, S>(
+    pub(super) fn build<T, S: Shared>(
         placed: &Placed<'_, T, S>,
         instances: &[Placement],
     ) -> Result<Self, InstanceError> {
@@ -204,7 +204,7 @@ impl Placing {
     }
 }
 
-impl<'a, T, S> Placed<'a, T, S> {
+impl<'a, T, S: Shared> Placed<'a, T, S> {
     pub(super) fn new(trees: Trees<'a, T, S>, padding: Padding, queries: InstanceTable) -> Self {
         let nodes = trees.parts.iter().map(|part| part.tree().map_or(&[][..], |tree| tree.nodes));
         let depths = nodes.map(stats::depth).collect();
@@ -252,7 +252,7 @@ impl<'a, T, S> Placed<'a, T, S> {
     }
 }
 
-impl<T, S> Placed<'_, T, S> {
+impl<T, S: Shared> Placed<'_, T, S> {
     fn see(&self, target: Target) -> Seen {
         match target {
             Target::Tree(tree) => {

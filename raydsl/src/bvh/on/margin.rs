@@ -13,7 +13,7 @@ use glam::Vec3;
 use super::beam::Beam;
 use crate::bvh::contract::is_within;
 use crate::bvh::{Branches, Padding, Placing, RecordOn, SceneView, Target, View};
-use crate::geometry::{HitOn, HitRecord, Primitive, Ray, RayOn, transform_ray};
+use crate::geometry::{HitOn, HitRecord, Primitive, Ray, RayOn, Shared, transform_ray};
 use crate::machine::margin::{Explored, Form, Interval, Known, Margin, Truth};
 use crate::machine::{B, Data, F, Machine, Type, U, V3};
 
@@ -88,7 +88,7 @@ pub(super) fn query<P: Primitive, R>(
 }
 
 /// Returns the ray in the space of an instance's tree.
-pub(super) fn local_ray<T, S>(
+pub(super) fn local_ray<T, S: Shared>(
     m: &Margin,
     scene: &View<'_, T, S>,
     inst: u32,

@@ -20,7 +20,7 @@ use super::wide::trace;
 use super::{
     CountedHit, CountedHitOn, RecordOn, SceneView, View, nearest_counted, traverse, traverse_packet,
 };
-use crate::geometry::{Hit, HitOn, HitRecord, Primitive, Ray, RayOn};
+use crate::geometry::{Hit, HitOn, HitRecord, Primitive, Ray, RayOn, Shared};
 use crate::machine::{
     A3, B, F, Lanes, Machine, Margin, On, Operation, Packet, Recorder, Scalar, Type, U, Value,
     Visit, fill,
@@ -206,9 +206,9 @@ impl<P: Primitive> Visit for AllHits<'_, '_, P> {
 }
 
 /// Transforms a ray to the space of an instance's tree. The scene must have instances.
-pub(crate) struct LocalRay<'s, 'a, T, S>(pub(crate) &'s View<'a, T, S>);
+pub(crate) struct LocalRay<'s, 'a, T, S: Shared>(pub(crate) &'s View<'a, T, S>);
 
-impl<T: Type, S: Type> Operation for LocalRay<'_, '_, T, S> {
+impl<T: Type, S: Shared> Operation for LocalRay<'_, '_, T, S> {
     type Input = (Ray, u32);
     type Output = Ray;
 
@@ -243,9 +243,9 @@ impl<T: Type, S: Type> Operation for LocalRay<'_, '_, T, S> {
 }
 
 /// Returns the transform from the space of the scene to that of an instance's tree.
-pub(crate) struct ToObject<'s, 'a, T, S>(pub(crate) &'s View<'a, T, S>);
+pub(crate) struct ToObject<'s, 'a, T, S: Shared>(pub(crate) &'s View<'a, T, S>);
 
-impl<T: Type, S: Type> Operation for ToObject<'_, '_, T, S> {
+impl<T: Type, S: Shared> Operation for ToObject<'_, '_, T, S> {
     type Input = u32;
     type Output = Affine3;
 

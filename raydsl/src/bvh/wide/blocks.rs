@@ -4,7 +4,7 @@ use super::collapse::Range;
 use super::node::{NO_BOXES, Planes, WIDTH, set_box};
 use super::prefetch::prefetch;
 use crate::bvh::build::tasks;
-use crate::geometry::{Aabb, Primitive};
+use crate::geometry::{Aabb, Primitive, SharedSlices};
 use crate::machine::{Leaves, Machine, Schema, Type, Value, op};
 
 /// One word of each of eight primitives.
@@ -60,7 +60,7 @@ impl Blocks {
     /// Builds the blocks of these ranges of the index list.
     pub(super) fn of<P: Primitive>(
         prims: &[P],
-        shared: &[P::Shared],
+        shared: SharedSlices<'_, P>,
         indices: &[u32],
         ranges: &[Range],
     ) -> Self {

@@ -1,5 +1,6 @@
 //! Wide trees as buffers of a device.
 
+use crate::geometry::Shared;
 use std::borrow::Cow;
 
 use bytemuck::cast_slice;
@@ -45,7 +46,7 @@ impl WideBuffers {
 
 // What depends on the primitive is compiled in the user's crate, for each type: it gathers the trees, and
 // functions that do not depend on it do the rest.
-impl<'a, T: Type, S> View<'a, T, S> {
+impl<'a, T: Type, S: Shared> View<'a, T, S> {
     /// Returns the buffers of wide trees as devices read them, if all trees are wide.
     pub(crate) fn wide_buffers(&self) -> Option<WideBuffers> {
         self.queries()?;

@@ -32,7 +32,7 @@ use std::sync::OnceLock;
 
 use super::build::Tree;
 use super::{Node, Traversal};
-use crate::geometry::{Aabb, Primitive};
+use crate::geometry::{Aabb, Primitive, SharedStore};
 use blocks::Blocks;
 use compressed::Compressed;
 pub(crate) use compressed::{COMPRESSED_SCHEMA, cell_sizes};
@@ -67,22 +67,23 @@ impl Wide {
     pub(super) fn of<P: Primitive>(
         tree: &Tree,
         prims: &[P],
-        shared: &[P::Shared],
+        shared: SharedStore<'_, P::Shared>,
         traversal: Traversal,
     ) -> Self {
         let Tree { nodes, indices } = tree;
+        let slices = shared.slices();
         let of = |range: collapse::Range| {
             let ids = &indices[range.first as usize..][..range.count as usize];
             ids.iter().map(|&id| &prims[id as usize])
         };
         let of_leaves = collapse::Primitives {
-            solidity: &|range| of(range).map(|p| 0.5 * p.get_bounds(shared).half_area()).sum(),
+            solidity: &|range| of(range).map(|p| 0.5 * p.get_bounds(slices).half_area()).sum(),
             prefetch: &|range| of(range).for_each(prefetch),
         };
         let collapse::Collapsed { nodes, blocks, most } = collapse::collapse(nodes, &of_leaves);
         let collapse::Most { pending, levels } = most;
         let bounds = tree.nodes.first().map_or(Aabb::EMPTY, Node::bounds);
-        let blocks = Blocks::of(prims, shared, indices, &blocks);
+        let blocks = Blocks::of(prims, slices, indices, &blocks);
         let (entries, compressed) = (OnceLock::new(), OnceLock::new());
         Self {
             nodes,
@@ -145,12 +146,13 @@ impl Wide {
     pub(super) fn compressed<P: Primitive>(
         &self,
         prims: &[P],
-        shared: &[P::Shared],
+        shared: SharedStore<'_, P::Shared>,
     ) -> &Compressed {
         if let Some(made) = self.compressed.get() {
             return made;
         }
         // Outside of the lock, since the primitives' code may do anything; of two, one is kept.
+        let shared = shared.slices();
         let made = Compressed::of(self, &|id| prims[id as usize].get_bounds(shared));
         self.compressed.get_or_init(|| made)
     }

@@ -8,7 +8,7 @@ use super::trace::Scratch;
 use super::{Compressed, Wide, single, trace};
 use crate::bvh::build::Tree;
 use crate::bvh::{Part, SceneView, Traversal, View};
-use crate::geometry::{Hit, Primitive, Ray};
+use crate::geometry::{Hit, Primitive, Ray, Shared, SharedStore};
 use crate::run::has_wide_lanes;
 
 /// The builder and the traversals of wide trees over primitives of type `T`.
@@ -16,11 +16,11 @@ use crate::run::has_wide_lanes;
 /// Traversals are most of the code of a program with queries. Only these pointers refer to them,
 /// and only [`Bvh::build_wide`](crate::bvh::Bvh::build_wide) makes these pointers: a program that
 /// does not call it is compiled without wide traversals.
-pub(crate) struct WideQueries<T, S> {
+pub(crate) struct WideQueries<T, S: Shared> {
     /// Collapses a binary tree.
-    pub(in crate::bvh) collapse: fn(&Tree, &[T], &[S], Traversal) -> Wide,
+    pub(in crate::bvh) collapse: fn(&Tree, &[T], SharedStore<'_, S>, Traversal) -> Wide,
     /// Returns a tree as devices read it.
-    pub(super) compressed: for<'t> fn(&'t Wide, &[T], &[S]) -> &'t Compressed,
+    pub(super) compressed: for<'t> fn(&'t Wide, &[T], SharedStore<'_, S>) -> &'t Compressed,
     /// Finds the least `(t, id)` hits of rays.
     pub(super) closest: Answer<T, S>,
     /// Finds whether rays hit anything.
@@ -42,15 +42,15 @@ pub(in crate::bvh) type Candidates<T, S> =
 /// Answers a query of the rays in scratch memory, with the lanes of a level.
 pub(super) type Answer<T, S> = fn(Option<Level>, &View<'_, T, S>, &mut Scratch);
 
-impl<T, S> Clone for WideQueries<T, S> {
+impl<T, S: Shared> Clone for WideQueries<T, S> {
     fn clone(&self) -> Self {
         *self
     }
 }
 
-impl<T, S> Copy for WideQueries<T, S> {}
+impl<T, S: Shared> Copy for WideQueries<T, S> {}
 
-impl<T, S> fmt::Debug for WideQueries<T, S> {
+impl<T, S: Shared> fmt::Debug for WideQueries<T, S> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str("WideQueries")
     }

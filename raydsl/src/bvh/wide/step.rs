@@ -7,8 +7,8 @@ use super::rays::{RayWords, row};
 use crate::bvh::Part;
 use crate::bvh::contract::is_within;
 use crate::bvh::packet_slabs::{and, max, min};
-use crate::geometry::{HitOn, HitRecord, Kinds, Primitive, RayOn};
-use crate::machine::{F, Lanes, Packet, Slice, Value, op};
+use crate::geometry::{HitOn, HitRecord, Kinds, Primitive, RayOn, SharedViews};
+use crate::machine::{F, Lanes, Packet, Value, op};
 
 /// The slabs of box tests: of a ray, or of a beam.
 pub(super) trait Slabs: Copy {
@@ -129,7 +129,7 @@ pub(super) fn words<E: Lanes>(e: E, words: &[u32; WIDTH]) -> E::U32 {
 pub(super) struct LeafIntersector<'a, P: Primitive> {
     pub(super) tree: &'a Wide,
     pub(super) part: Part<'a, P, P::Shared>,
-    pub(super) shared: Slice<'a, P::Shared>,
+    pub(super) shared: SharedViews<'a, P>,
     pub(super) kinds: Kinds,
 }
 

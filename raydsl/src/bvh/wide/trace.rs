@@ -17,7 +17,7 @@ use super::stream::{self, RayStream};
 use crate::bvh::contract::{Padding, is_finite};
 use crate::bvh::packet_slabs::and;
 use crate::bvh::{Part, SceneView, Traversal, View, traverse};
-use crate::geometry::{Aabb, Hit, HitOn, Primitive, Ray, RayOn};
+use crate::geometry::{Aabb, Hit, HitOn, Primitive, Ray, RayOn, Shared};
 use crate::machine::{B, Entered, F, Lanes, Packet, U, op};
 use crate::run::{self, LanesTask, Scratch as _, fibers, with_wide_lanes};
 
@@ -41,7 +41,7 @@ thread_local! {
 
 /// Finds the least `(t, id)` hit of every active lane, for several rays of a packet.
 #[inline(always)]
-pub(crate) fn closest_hits<L: Lanes, T, S>(
+pub(crate) fn closest_hits<L: Lanes, T, S: Shared>(
     m: &Packet<L>,
     (scene, queries): (&View<'_, T, S>, &WideQueries<T, S>),
     rays: &[RayOn<Packet<L>>],
@@ -64,7 +64,7 @@ pub(crate) fn closest_hits<L: Lanes, T, S>(
 
 /// Finds whether every active lane hits anything, for several rays of a packet.
 #[inline(always)]
-pub(crate) fn any_hits<L: Lanes, T, S>(
+pub(crate) fn any_hits<L: Lanes, T, S: Shared>(
     m: &Packet<L>,
     (scene, queries): (&View<'_, T, S>, &WideQueries<T, S>),
     rays: &[RayOn<Packet<L>>],
@@ -126,7 +126,7 @@ fn ask_batched(
 const BATCH: usize = 2048;
 
 /// Calls `found` with the least `(t, id)` hit of each ray.
-pub(crate) fn each_closest<T, S>(
+pub(crate) fn each_closest<T, S: Shared>(
     (scene, queries): (&View<'_, T, S>, &WideQueries<T, S>),
     rays: &[Ray],
     mut found: impl FnMut(&Ray, Hit),
@@ -143,7 +143,7 @@ pub(crate) fn each_closest<T, S>(
 }
 
 /// Calls `found` with whether each ray hits anything.
-pub(crate) fn each_any<T, S>(
+pub(crate) fn each_any<T, S: Shared>(
     (scene, queries): (&View<'_, T, S>, &WideQueries<T, S>),
     rays: &[Ray],
     mut found: impl FnMut(bool),

@@ -12,7 +12,7 @@ use crate::bvh::{
     SceneView,
 };
 use crate::bvh::{Placed, View, any_where, buffers, closest_where};
-use crate::geometry::{Hit, HitOn, Primitive, Ray, RayOn, transform_ray};
+use crate::geometry::{Hit, HitOn, Primitive, Ray, RayOn, Shared, transform_ray};
 use crate::machine::record::ir::{Expr, Type};
 use crate::machine::record::{from_template, zero_value};
 use crate::machine::wgsl::BufferKey;
@@ -244,7 +244,7 @@ impl Recorder {
     }
 
     /// Returns `fn scene_places_at(i: u32) -> Place`, and the name of its buffer.
-    fn places<T: HostType, S: HostType>(&self, scene: &View<'_, T, S>) -> (usize, String) {
+    fn places<T: HostType, S: Shared>(&self, scene: &View<'_, T, S>) -> (usize, String) {
         let len = scene.placed().map_or(0, |placed| placed.place_count());
         self.places_buffer(&Data::name(scene), scene.key_of(buffers::PLACES), len)
     }
@@ -278,7 +278,7 @@ impl Recorder {
     }
 
     /// Returns the ray in the space of an instance's tree.
-    pub(in crate::bvh::on) fn local_ray_of<T: HostType, S: HostType>(
+    pub(in crate::bvh::on) fn local_ray_of<T: HostType, S: Shared>(
         &self,
         scene: &View<'_, T, S>,
         inst: U<Self>,
@@ -299,7 +299,7 @@ impl Recorder {
     }
 
     /// Returns the transform from the space of the scene to that of an instance's tree.
-    pub(in crate::bvh::on) fn to_object_of<T: HostType, S: HostType>(
+    pub(in crate::bvh::on) fn to_object_of<T: HostType, S: Shared>(
         &self,
         scene: &View<'_, T, S>,
         inst: U<Self>,
@@ -324,7 +324,7 @@ impl Recorder {
 
     /// Returns a function that descends to an instance and runs `body` with the `place` on each
     /// level.
-    fn levels_function<T: HostType, S: HostType>(
+    fn levels_function<T: HostType, S: Shared>(
         &self,
         scene: &View<'_, T, S>,
         suffix: &str,

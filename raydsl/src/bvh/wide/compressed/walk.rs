@@ -68,7 +68,8 @@ impl<P: Primitive> Bvh<'_, P> {
                 let [first, count] = node.leaf(slot);
                 for &id in &tree.ids[first..first + count] {
                     cost.primitives += 1;
-                    let record = self.tree.prims[id as usize].intersect(ray, self.tree.shared);
+                    let record =
+                        self.tree.prims[id as usize].intersect(ray, self.tree.shared.slices());
                     let hit = Hit { prim_id: id, ..record.hit() };
                     if is_within(hit, ray) && is_before(false, hit, best) {
                         best = hit;
