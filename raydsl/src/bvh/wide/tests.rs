@@ -17,7 +17,7 @@ use crate::bvh::validate::check;
 use crate::bvh::{
     BuildConfig, BuildQuality, Bvh, Node, RecordQuery, Settings, Traversal, validate,
 };
-use crate::geometry::{Aabb, Hit, Ray, Triangle};
+use crate::geometry::{Aabb, Hit, Ray, SharedStore, Triangle};
 use crate::machine::Simd8;
 
 /// Returns the settings of a wide tree over any number of primitives.
@@ -118,7 +118,7 @@ fn the_binary_tree_comes_back() {
             let settings = Settings { config: quality.into(), is_wide: true };
             let built =
                 build_watched(&source, prims.len(), &settings, None).expect("finite bounds");
-            let wide = Wide::of(&built, &prims, &[], Traversal::Auto);
+            let wide = Wide::of(&built, &prims, SharedStore::NONE, Traversal::Auto);
             let tree = wide.binary();
             assert_eq!(check(&tree.nodes, &tree.indices, prims.len(), &source), Ok(()));
             assert_eq!(tree.nodes.first().map(Node::bounds), built.nodes.first().map(Node::bounds));
@@ -126,7 +126,7 @@ fn the_binary_tree_comes_back() {
             assert!(tree.nodes.iter().map(bits).all(|node| boxes.contains(&node)), "of its own");
             assert!(depth(&tree.nodes) <= depth(&built.nodes));
             // There is nothing left to collapse.
-            assert_eq!(Wide::of(&tree, &prims, &[], Traversal::Auto).binary(), tree);
+            assert_eq!(Wide::of(&tree, &prims, SharedStore::NONE, Traversal::Auto).binary(), tree);
         }
     }
 }

@@ -5,7 +5,7 @@ use glam::Vec3;
 use super::{Compressed, CompressedNode, Grid};
 use crate::bvh::wide::node::{Child, WIDTH};
 use crate::bvh::{BuildConfig, BuildQuality, Bvh, BvhList, RecordQuery, buffers, nearest_counted};
-use crate::geometry::{Aabb, Ray, Triangle};
+use crate::geometry::{Aabb, Ray, SharedStore, Triangle};
 use crate::machine::bytes_of;
 
 /// Returns a pseudo-random number from 0 to 1.
@@ -99,7 +99,7 @@ fn boxes_hold_their_primitives() {
                     assert!(size > 1e38, "devices ask the binary tree of the largest scenes");
                     continue;
                 }
-                let tree = wide.compressed(&prims, &[]);
+                let tree = wide.compressed(&prims, SharedStore::NONE);
                 let mut seen = vec![0; prims.len()];
                 if count > 0 {
                     let levels = descend(tree, 0, everything, (&prims, is_split), &mut seen);
@@ -153,7 +153,7 @@ fn boxes_are_little_larger() {
         };
         (0..WIDTH).filter(is_there).map(of).sum::<f64>()
     };
-    let compressed: f64 = wide.compressed(&prims, &[]).nodes.iter().map(areas).sum();
+    let compressed: f64 = wide.compressed(&prims, SharedStore::NONE).nodes.iter().map(areas).sum();
     let exact = wide.nodes.iter().flat_map(|node| {
         let is_there = |&k: &usize| node.children[k] != Child::NONE.0;
         (0..WIDTH).filter(is_there).map(|k| node.bounds(k)).collect::<Vec<_>>()
