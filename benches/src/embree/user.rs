@@ -7,7 +7,7 @@
 
 use std::ffi::{c_int, c_uint, c_void};
 
-use raydsl::geometry::{HitOn, HitRecord, Primitive, RayOn, shared_slice};
+use raydsl::geometry::{HitOn, HitRecord, Primitive, RayOn, shared_views};
 use raydsl::kernel::{PacketKernel, PacketTask};
 use raydsl::machine::{B, Entered, F, Lanes, Machine, Packet, V3, op};
 use raydsl::prelude::*;
@@ -258,7 +258,7 @@ unsafe fn answer_packet<P: Primitive<Shared = ()>, L: Lanes, const IS_CLOSEST: b
             t_max: F(load(a, l, member::T_FAR)),
         }
     };
-    let hit = P::Hit::hit_on(P::intersect_one_on(m, prim, ray, shared_slice(&[])));
+    let hit = P::Hit::hit_on(P::intersect_one_on(m, prim, ray, shared_views::<()>(&[])));
     let hits = l.mask_binary(op::And, valid, within(m, hit, ray));
     if !l.any(hits) {
         return;
