@@ -415,7 +415,7 @@ enum Mixed {
 }
 // ANCHOR_END: several
 
-/// A disk that shares pairs of a normal and a radius, in whole numbers.
+/// A disk that shares a table of radii, which are fractions.
 #[primitive]
 #[derive(Debug)]
 struct Coin {

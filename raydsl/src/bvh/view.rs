@@ -38,6 +38,7 @@ pub(crate) mod buffers {
     pub(crate) const LEAVES: u32 = 7;
     pub(crate) const LEAF_IDS: u32 = 8;
     pub(crate) const WIDE_ROOTS: u32 = 9;
+    /// Of each slice of shared data, by its place.
     pub(crate) const SHARED: [u32; 3] = [3, 10, 11];
 }
 
