@@ -6,6 +6,7 @@ use super::places::{change, is_part_of_element, part_of, plain_steps};
 use super::{Binding, Emitter, own, private, shown};
 use crate::here::{At, quote_here as quote, word};
 use crate::model::{Expr, Kind, Place, is_part};
+use crate::twin::kinds;
 
 impl Emitter<'_> {
     pub(super) fn call(&mut self, path: &TokenStream, args: &[Expr], span: Span) -> TokenStream {
@@ -52,20 +53,25 @@ impl Emitter<'_> {
     ) -> TokenStream {
         let _at = At::new(name.span());
         let m = own("m");
-        let ty = self.without_self(ty);
-        // The parameters of a variant's enum are inferred, as in the source.
-        let is_variant = is_part(name) || name.to_string().starts_with(char::is_uppercase);
-        let is_path = !ty.to_string().contains('<');
         let bare = if name == "Some" { args.first().and_then(|e| self.with_bare(e)) } else { None };
-        let name = word(&format!("{name}_on"));
+        let function = word(&format!("{name}_on"));
         let mut args = self.arguments(args);
         if let Some(bare) = bare {
             args.values = vec![bare];
         }
         let values = &args.values;
-        let function =
-            if is_variant && is_path { quote!(#ty::#name) } else { quote!(<#ty>::#name) };
-        args.around(quote!(#function(#m, #(#values),*)))
+        if is_part(name)
+            && let [value, values @ ..] = &values[..]
+        {
+            let kinds = kinds();
+            return args.around(quote!(#value.#kinds().#function(#m, #(#values),*)));
+        }
+        let ty = self.without_self(ty);
+        // The parameters of a variant's enum are inferred, as in the source.
+        let is_variant = is_part(name) || name.to_string().starts_with(char::is_uppercase);
+        let is_path = !ty.to_string().contains('<');
+        let path = if is_variant && is_path { quote!(#ty) } else { quote!(<#ty>) };
+        args.around(quote!(#path::#function(#m, #(#values),*)))
     }
 
     fn arguments(&mut self, args: &[Expr]) -> Arguments {

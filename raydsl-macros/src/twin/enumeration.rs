@@ -3,7 +3,7 @@
 use proc_macro2::{Ident, TokenStream};
 use quote::{format_ident, quote};
 
-use super::shared::methods;
+use super::shared::{kinds, methods};
 use crate::diag::Errors;
 use crate::generics::Generics;
 use crate::here::private;
@@ -88,19 +88,24 @@ impl Enumeration<'_> {
         }
     }
 
-    /// Returns the functions for variants in patterns and expressions of kernels.
+    /// Returns the methods of values for variants in patterns of kernels.
     fn tests(&self) -> TokenStream {
         let (p, name, twin, variants) = (private(), &self.item.ident, &self.twin, self.variants);
-        let count = variants.len() as u32;
+        let (count, kinds) = (variants.len() as u32, kinds());
         let tests = variants.iter().map(|v| format_ident!("__is_{v}_on"));
         quote! {
             #[doc(hidden)]
             #[allow(non_snake_case, dead_code, reason = "named as the variants")]
-            impl #name {
+            impl<__M: #p::Machine> #twin<__M> {
+                #[inline(always)]
+                pub fn #kinds(self) -> Self {
+                    self
+                }
+
                 #(
                     #[inline(always)]
-                    pub fn #tests<__M: #p::Machine>(m: &__M, value: #twin<__M>) -> #p::B<__M> {
-                        #p::is_kind(m, value.number, Self::#variants as u32, #count)
+                    pub fn #tests(self, m: &__M) -> #p::B<__M> {
+                        #p::is_kind(m, self.number, #name::#variants as u32, #count)
                     }
                 )*
             }

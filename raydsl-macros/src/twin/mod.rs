@@ -19,6 +19,7 @@ use crate::parse;
 
 pub(crate) use choice::primitive_enum;
 pub(crate) use record::hit_record;
+pub(crate) use shared::kinds;
 
 /// Expands `#[derive(Type)]`.
 pub(crate) fn derive(item: &syn::DeriveInput) -> TokenStream {

@@ -1,11 +1,20 @@
 //! Code common to the twins of structs and enums.
 
-use proc_macro2::TokenStream;
+use proc_macro2::{Ident, Span, TokenStream};
 use quote::quote;
 
 use super::operators;
 use crate::generics::Generics;
 use crate::here::private;
+
+/// Returns the name of the method of twins of enums that returns the value itself.
+///
+/// Patterns call the methods of variants on what it returns, and it has one span in the whole program:
+/// of an enum that is no type of kernels, rustc says once that there is no such method, instead of
+/// each time that a pattern tests a variant or binds a field.
+pub(crate) fn kinds() -> Ident {
+    Ident::new("__kinds_by_derive_Type", Span::call_site())
+}
 
 /// Returns the implementations of a twin in variables, and of its methods, the same as the host
 /// type's.

@@ -11,7 +11,7 @@ use proc_macro2::{Ident, TokenStream};
 use quote::{ToTokens, format_ident, quote};
 use syn::spanned::Spanned;
 
-use super::shared::capture;
+use super::shared::{capture, kinds};
 use super::structure::twin_of;
 use super::{bound_parameters, check_types};
 use crate::diag::Errors;
@@ -67,12 +67,12 @@ impl Part {
         }
     }
 
-    /// Returns the value of the machine that `value` holds.
+    /// Returns the value of the machine that `self` holds.
     fn loaded(&self) -> TokenStream {
         let (p, ty, slot) = (private(), &self.ty, &self.slot);
         match self.storage {
-            Storage::Slots => quote!(value.#slot),
-            Storage::Words => quote!(#p::of_words::<_, #ty, _>(m, value.#slot)),
+            Storage::Slots => quote!(self.#slot),
+            Storage::Words => quote!(#p::of_words::<_, #ty, _>(m, self.#slot)),
         }
     }
 }
@@ -339,53 +339,34 @@ impl Sum {
 
     /// Returns the functions for variants in patterns and expressions of kernels.
     fn functions(&self) -> TokenStream {
-        let (host, Generics { declared, predicates, .. }) = (self.host(), &self.generics);
-        let functions = self.variants.iter().map(|v| self.functions_of(v));
+        let (p, host, twin, kinds) = (private(), self.host(), self.twin_type(), kinds());
+        let Generics { declared, predicates, .. } = &self.generics;
+        let (makers, methods): (Vec<_>, Vec<_>) =
+            self.variants.iter().map(|v| (self.makers_of(v), self.methods_of(v))).unzip();
         quote! {
             #[doc(hidden)]
             #[allow(non_snake_case, unused, reason = "named as the variants")]
             impl<#declared> #host where #predicates {
-                #(#functions)*
+                #(#makers)*
+            }
+
+            #[doc(hidden)]
+            #[allow(non_snake_case, unused, reason = "named as the variants")]
+            impl<__M: #p::Machine, #declared> #twin where #predicates {
+                #[inline(always)]
+                pub fn #kinds(self) -> Self {
+                    self
+                }
+
+                #(#methods)*
             }
         }
     }
 
-    fn functions_of(&self, v: &Variant) -> TokenStream {
+    /// Returns the functions that make values of a variant.
+    fn makers_of(&self, v: &Variant) -> TokenStream {
         let (p, twin, number, data) = (private(), self.twin_type(), v.number, self.data_type());
-        let count = self.count();
-        let (is, new) = (format_ident!("__is_{}_on", v.name), format_ident!("__new_{}_on", v.name));
-        let parts = v.parts.iter().map(|part| {
-            let (ty, slot, member) = (&part.ty, &part.slot, part.member.to_token_stream());
-            let (stored, loaded) = (part.stored(&format_ident!("part")), part.loaded());
-            let field = unraw(&member.to_string());
-            let get = format_ident!("__{}_{field}_on", v.name);
-            let set = format_ident!("__set_{}_{field}_on", v.name);
-            let set = v.is_named.then(|| {
-                quote! {
-                    #[inline(always)]
-                    pub fn #set<__M: #p::Machine>(
-                        m: &__M,
-                        value: #twin,
-                        part: impl #p::Coerce<__M, <#ty as #p::Type>::On<__M>>,
-                    ) -> #twin {
-                        let mut value = value;
-                        value.#slot = #stored;
-                        value
-                    }
-                }
-            });
-            quote! {
-                #[inline(always)]
-                pub fn #get<__M: #p::Machine>(
-                    m: &__M,
-                    value: #twin,
-                ) -> <#ty as #p::Type>::On<__M> {
-                    #loaded
-                }
-
-                #set
-            }
-        });
+        let new = format_ident!("__new_{}_on", v.name);
         let make = (!v.is_named).then(|| {
             let make = format_ident!("{}_on", v.name);
             let (slots, types): (Vec<_>, Vec<_>) =
@@ -405,20 +386,55 @@ impl Sum {
         });
         quote! {
             #[inline(always)]
-            pub fn #is<__M: #p::Machine>(m: &__M, value: #twin) -> #p::B<__M> {
-                #p::is_kind(m, value.kind, #number, #count)
-            }
-
-            #[inline(always)]
             pub fn #new<__M: #p::Machine>(m: &__M) -> #twin {
                 let mut value: <#data as #p::Type>::On<__M> = #p::Value::zero(m);
                 value.kind = #p::u32(m, #number);
                 value
             }
 
-            #(#parts)*
-
             #make
+        }
+    }
+
+    /// Returns the methods of values that may be of a variant.
+    fn methods_of(&self, v: &Variant) -> TokenStream {
+        let (p, number, count) = (private(), v.number, self.count());
+        let is = format_ident!("__is_{}_on", v.name);
+        let parts = v.parts.iter().map(|part| {
+            let (ty, slot, member) = (&part.ty, &part.slot, part.member.to_token_stream());
+            let (stored, loaded) = (part.stored(&format_ident!("part")), part.loaded());
+            let field = unraw(&member.to_string());
+            let get = format_ident!("__{}_{field}_on", v.name);
+            let set = format_ident!("__set_{}_{field}_on", v.name);
+            let set = v.is_named.then(|| {
+                quote! {
+                    #[inline(always)]
+                    pub fn #set(
+                        mut self,
+                        m: &__M,
+                        part: impl #p::Coerce<__M, <#ty as #p::Type>::On<__M>>,
+                    ) -> Self {
+                        self.#slot = #stored;
+                        self
+                    }
+                }
+            });
+            quote! {
+                #[inline(always)]
+                pub fn #get(self, m: &__M) -> <#ty as #p::Type>::On<__M> {
+                    #loaded
+                }
+
+                #set
+            }
+        });
+        quote! {
+            #[inline(always)]
+            pub fn #is(self, m: &__M) -> #p::B<__M> {
+                #p::is_kind(m, self.kind, #number, #count)
+            }
+
+            #(#parts)*
         }
     }
 }

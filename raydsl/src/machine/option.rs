@@ -40,27 +40,12 @@ fn of<M: Machine, T: Type>(is_some: B<M>, value: T::On<M>) -> OptionOn<M, T> {
     OptionOn { is_some, value, host: PhantomData }
 }
 
-/// The functions of the variants, as the derive of an enum writes them.
+/// The functions that make values of the variants, as the derive of an enum writes them.
 #[derive(Debug)]
 pub enum Options {}
 
 #[expect(non_snake_case, missing_docs, reason = "named as the variants")]
 impl Options {
-    #[inline(always)]
-    pub fn __is_Some_on<M: Machine, T: Type>(_: &M, v: OptionOn<M, T>) -> B<M> {
-        v.is_some
-    }
-
-    #[inline(always)]
-    pub fn __is_None_on<M: Machine, T: Type>(m: &M, v: OptionOn<M, T>) -> B<M> {
-        B(m.bool_not(v.is_some.0))
-    }
-
-    #[inline(always)]
-    pub fn __Some_0_on<M: Machine, T: Type>(_: &M, v: OptionOn<M, T>) -> T::On<M> {
-        v.value
-    }
-
     #[inline(always)]
     pub fn Some_on<M: Machine, V: Inferred<M>>(m: &M, v: V) -> OptionOn<M, V::Host> {
         of(B(m.bool(true)), v.give(m))
@@ -69,6 +54,30 @@ impl Options {
     #[inline(always)]
     pub fn None_on<M: Machine, T: Type>(m: &M) -> OptionOn<M, T> {
         of(B(m.bool(false)), Value::zero(m))
+    }
+}
+
+/// The methods for the variants in patterns, as the derive of an enum writes them.
+#[expect(non_snake_case, missing_docs, reason = "named as the variants")]
+impl<M: Machine, T: Type> OptionOn<M, T> {
+    #[inline(always)]
+    pub fn __kinds_by_derive_Type(self) -> Self {
+        self
+    }
+
+    #[inline(always)]
+    pub fn __is_Some_on(self, _: &M) -> B<M> {
+        self.is_some
+    }
+
+    #[inline(always)]
+    pub fn __is_None_on(self, m: &M) -> B<M> {
+        B(m.bool_not(self.is_some.0))
+    }
+
+    #[inline(always)]
+    pub fn __Some_0_on(self, _: &M) -> T::On<M> {
+        self.value
     }
 }
 
