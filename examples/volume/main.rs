@@ -131,7 +131,7 @@ struct View {
     spans: Vec3,
     /// Longest side of that box.
     extent: f32,
-    /// Size of a voxel along it.
+    /// Distance of voxels along the longest side of the grid.
     voxel: f32,
     /// Direction to the camera.
     from: Vec3,
@@ -141,15 +141,21 @@ struct View {
 impl View {
     fn new(grid: &Grid<'_, f32>, from: Option<[f64; 3]>) -> Self {
         let (size, to_world) = (grid.size(), grid.config().to_world);
-        let spans = (to_world.matrix3 * size.as_vec3()).abs();
+        let Mat3 { x_axis, y_axis, z_axis } = to_world.matrix3;
+        let count = size.as_vec3();
+        let spans = x_axis.abs() * count.x + y_axis.abs() * count.y + z_axis.abs() * count.z;
         let extent = spans.max_element();
+        let sides = [(x_axis, count.x), (y_axis, count.y), (z_axis, count.z)];
+        let [x, y, z] = sides.map(|(axis, count)| (axis.length() * count, axis.length()));
+        let longer = |a: (f32, f32), b: (f32, f32)| if b.0 > a.0 { b } else { a };
+        let (_, voxel) = longer(longer(x, y), z);
         let from = from.map_or(vec3(0.75, 1.15, 0.55), |v| Vec3::from(v.map(|x| x as f32)));
         let from = from.normalize_or(Vec3::Y);
         Self {
             middle: to_world.transform_point3((size - 1).as_vec3() * 0.5),
             spans,
             extent,
-            voxel: extent / size.max_element() as f32,
+            voxel,
             from,
             up: if from.z.abs() > 0.99 { Vec3::Y } else { Vec3::Z },
         }
@@ -248,4 +254,26 @@ fn show(args: &Args, grid: &Grid<'_, f32>) -> Result<(), Failure> {
         Frames { size: args.size, runs: args.runs, variants: &args.variants, out: &args.out };
     frames.report(&frames.compare(&primary, &view.camera()))?;
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn views_are_of_the_box_around_the_grid() {
+        let size = uvec3(8, 2, 4);
+        let view = |config| {
+            let grid = Grid::new(vec![0.0f32; 64], size, config).expect("a grid");
+            View::new(&grid, None)
+        };
+        // The longest side is not the one with the most voxels.
+        let long = view(GridConfig::new().spacing(vec3(1.0, 1.0, 4.0)));
+        assert_eq!((long.spans, long.extent, long.voxel), (vec3(8.0, 2.0, 16.0), 16.0, 4.0));
+        // Turned, so that the sides along x and y are both along either.
+        let matrix3 = Mat3::from_cols(vec3(0.6, 0.8, 0.0), vec3(-0.8, 0.6, 0.0), Vec3::Z);
+        let turned = view(GridConfig::new().to_world(Affine3 { matrix3, translation: Vec3::ZERO }));
+        let off = (turned.spans - vec3(6.4, 7.6, 4.0)).abs().max_element();
+        assert!(off < 1e-5 && (turned.voxel - 1.0).abs() < 1e-6, "{}", turned.spans);
+    }
 }

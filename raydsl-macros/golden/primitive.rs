@@ -467,10 +467,10 @@ for ColorSphere {
         ::raydsl::__private::visit_value(*self, name, visit);
     }
 }
-const _: () = assert!(
+const _: () = ::core::assert!(
     ::core::mem::size_of:: < ColorSphere > () == ::core::mem::size_of:: < Vec3 > () +
     ::core::mem::size_of:: < Unorm8 > () + ::core::mem::size_of:: < [Unorm8; 3] > (),
-    concat!("the primitive `", stringify!(ColorSphere),
+    ::core::concat!("the primitive `", ::core::stringify!(ColorSphere),
     "` has gaps between its members\n",
     "  help: order them by size, or fill the gaps with members of your own",),
 );

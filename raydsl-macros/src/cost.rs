@@ -5,7 +5,7 @@
 //! rays disagree; so arms that are *small* are not tested, and an `if` that only chooses between
 //! small values is a selection.
 
-use crate::model::{BinaryOp, Block, Expr, Kind, Step, is_part};
+use crate::model::{BinaryOp, Block, Expr, Kind, Step};
 use crate::ops;
 
 /// The maximum cost of an arm of statements that runs untested.
@@ -41,10 +41,11 @@ impl Expr {
             | Kind::Not(_)
             | Kind::Compare { .. }
             | Kind::Is { .. }
+            | Kind::OfVariant { .. }
+            | Kind::NewVariant { .. }
             | Kind::Logic { .. } => 1,
             Kind::Binary { op, .. } => operator(*op),
             Kind::Cast { .. } => 3,
-            Kind::Associated { name, .. } if is_part(name) => 1,
             Kind::If { .. } | Kind::Break(..) | Kind::Continue(_) | Kind::Return(_) => 2,
             Kind::Call { path, .. } => ops::cheap_function(&path.to_string()).unwrap_or(LARGE),
             Kind::Method { name, .. } => ops::cheap_method(&name.to_string()).unwrap_or(LARGE),

@@ -161,9 +161,12 @@ fn expand_primitive(
         return refused(&item, &item, what, "write `#[primitive] struct Name { ... }`");
     };
     if let syn::Data::Enum(e) = &s.data {
-        let arguments = items::EnumArguments::of(args);
-        let shared = arguments.shared.clone();
-        return twin::primitive_enum(&s, e, &shared, || items::forwarded(arguments, &s, e));
+        let mut errors = diag::Errors::default();
+        let arguments = items::EnumArguments::of(args, &mut errors);
+        let forwarded = || items::forwarded(&arguments, &s, e);
+        let primitive = twin::primitive_enum(&s, e, &arguments.shared, forwarded);
+        let errors = errors.into_tokens();
+        return quote!(#primitive #errors);
     }
     let twin = twin::primitive_item(&s);
     if args.is_empty() {

@@ -128,10 +128,21 @@ pub(crate) enum Kind {
         value: Box<Expr>,
         ty: TokenStream,
     },
-    /// Whether a value is of a variant without fields: `path` is `ty::name`.
+    /// Whether a value is of a variant without fields, which `path` names.
     Is {
         value: Box<Expr>,
         path: TokenStream,
+        name: Ident,
+    },
+    /// A call of one of the methods that the derive of an enum writes for a variant: whether a value is of
+    /// it, a field, or the value with another field.
+    OfVariant {
+        value: Box<Expr>,
+        method: Ident,
+        args: Vec<Expr>,
+    },
+    /// A value of a variant with named fields, before they are set.
+    NewVariant {
         ty: TokenStream,
         name: Ident,
     },
@@ -279,12 +290,6 @@ pub(crate) struct BinaryOp {
     pub(crate) may_trap: bool,
     /// Whether it may overflow integers: an error in running lanes, where it is checked.
     pub(crate) may_overflow: bool,
-}
-
-/// Returns whether an associated function is one that a derive writes: it tests a variant or returns
-/// a part of it.
-pub(crate) fn is_part(name: &Ident) -> bool {
-    name.to_string().starts_with("__")
 }
 
 /// Returns whether a name is a constant's, by rustc's naming convention.

@@ -5,8 +5,14 @@ use proc_macro2::{Ident, Span, TokenStream};
 use super::places::{change, is_part_of_element, part_of, plain_steps};
 use super::{Binding, Emitter, own, private, shown};
 use crate::here::{At, quote_here as quote, word};
-use crate::model::{Expr, Kind, Place, is_part};
+use crate::model::{Expr, Kind, Place};
+use crate::parse::unraw;
 use crate::twin::kinds;
+
+/// Returns the name of the lifted function or method.
+fn lifted(name: &Ident) -> Ident {
+    word(&unraw(&format!("{name}_on")))
+}
 
 impl Emitter<'_> {
     pub(super) fn call(&mut self, path: &TokenStream, args: &[Expr], span: Span) -> TokenStream {
@@ -54,24 +60,47 @@ impl Emitter<'_> {
         let _at = At::new(name.span());
         let m = own("m");
         let bare = if name == "Some" { args.first().and_then(|e| self.with_bare(e)) } else { None };
-        let function = word(&format!("{name}_on"));
+        let function = lifted(name);
         let mut args = self.arguments(args);
         if let Some(bare) = bare {
             args.values = vec![bare];
         }
         let values = &args.values;
-        if is_part(name)
-            && let [value, values @ ..] = &values[..]
-        {
-            let kinds = kinds();
-            return args.around(quote!(#value.#kinds().#function(#m, #(#values),*)));
-        }
+        let is_variant = name.to_string().starts_with(char::is_uppercase);
+        let ty = if is_variant { self.enumeration(ty) } else { self.qualified(ty) };
+        args.around(quote!(#ty::#function(#m, #(#values),*)))
+    }
+
+    fn qualified(&self, ty: &TokenStream) -> TokenStream {
         let ty = self.without_self(ty);
-        // The parameters of a variant's enum are inferred, as in the source.
-        let is_variant = is_part(name) || name.to_string().starts_with(char::is_uppercase);
-        let is_path = !ty.to_string().contains('<');
-        let path = if is_variant && is_path { quote!(#ty) } else { quote!(<#ty>) };
-        args.around(quote!(#path::#function(#m, #(#values),*)))
+        quote!(<#ty>)
+    }
+
+    /// Emits the enum of a variant: its parameters are inferred, as in the source.
+    fn enumeration(&self, ty: &TokenStream) -> TokenStream {
+        if ty.to_string().contains('<') { self.qualified(ty) } else { self.without_self(ty) }
+    }
+
+    /// Emits a call of one of the methods that the derive writes for a variant.
+    pub(super) fn of_variant(
+        &mut self,
+        value: &Expr,
+        method: &Ident,
+        args: &[Expr],
+    ) -> TokenStream {
+        let _at = At::new(method.span());
+        let (m, kinds, method) = (own("m"), kinds(), lifted(method));
+        let (value, args) = (self.value(value), self.arguments(args));
+        let values = &args.values;
+        args.around(quote!(#value.#kinds().#method(#m, #(#values),*)))
+    }
+
+    /// Emits a value of a variant whose fields are not set yet.
+    pub(super) fn new_variant(&self, ty: &TokenStream, name: &Ident) -> TokenStream {
+        let _at = At::new(name.span());
+        let (m, ty) = (own("m"), self.enumeration(ty));
+        let new = word(&unraw(&format!("__new_{name}_on")));
+        quote!(#ty::#new(#m))
     }
 
     fn arguments(&mut self, args: &[Expr]) -> Arguments {
@@ -199,7 +228,7 @@ impl Emitter<'_> {
     ) -> TokenStream {
         self.refuse(receiver, name);
         if let Some((generic, this)) = self.generic_receiver(receiver) {
-            let function = word(&format!("{name}_on"));
+            let function = lifted(name);
             let mut args = self.arguments(args);
             args.values.splice(0..0, numbers(turbofish));
             let (m, values) = (own("m"), &args.values);

@@ -33,7 +33,7 @@ impl Emitter<'_> {
             Kind::Compare { op, a, b } => self.host_binary(comparison(op), a, b),
             Kind::Is { value, path, .. } => {
                 let value = self.host_value(value)?;
-                Some(quote!((#value == #path)))
+                Some(quote!(::core::matches!(#value, #path)))
             }
             Kind::Logic { and, a, b } => self.host_binary(if *and { "&&" } else { "||" }, a, b),
             _ => None,

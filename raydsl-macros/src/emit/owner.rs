@@ -5,7 +5,7 @@
 use proc_macro2::{Ident, TokenStream, TokenTree};
 
 use super::Emitter;
-use crate::model::{Expr, Kind, is_part};
+use crate::model::{Expr, Kind};
 use crate::ops;
 
 /// The origin of a value's type.
@@ -59,7 +59,7 @@ impl Emitter<'_> {
                 (Owner::Library, Owner::Library) => Owner::Library,
                 _ => Owner::Unknown,
             },
-            Kind::Associated { name, .. } if is_part(name) => Owner::Unknown,
+            Kind::OfVariant { .. } | Kind::NewVariant { .. } => Owner::Unknown,
             Kind::Associated { ty, .. } => Owner::of_type(ty),
             Kind::Field { base, member } if is_component(member) => if_library(self.owner(base)),
             Kind::Method { receiver, name, .. }

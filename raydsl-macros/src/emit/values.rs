@@ -10,6 +10,7 @@ use crate::here::{At, quote_here as quote, word};
 
 use super::{Binding, Dest, Emitter, SlotType, own, private};
 use crate::model::{BinaryOp, Block, Expr, IntType, Kind};
+use crate::parse::unraw;
 
 impl Emitter<'_> {
     /// Emits a value, with a name for readers of generated code.
@@ -238,10 +239,12 @@ impl Emitter<'_> {
             }
             Kind::Logic { and, a, b } => self.logic(*and, a, b, span),
             Kind::Compare { op, a, b } => self.comparison(op, a, b),
-            Kind::Is { value, ty, name, .. } => {
-                let test = Ident::new(&format!("__is_{name}"), name.span());
-                self.associated(ty, &test, core::slice::from_ref(value))
+            Kind::Is { value, name, .. } => {
+                let test = Ident::new(&unraw(&format!("__is_{name}")), name.span());
+                self.of_variant(value, &test, &[])
             }
+            Kind::OfVariant { value, method, args } => self.of_variant(value, method, args),
+            Kind::NewVariant { ty, name } => self.new_variant(ty, name),
             Kind::Cast { value, ty } => {
                 let value = self.value(value);
                 quote!(#p::cast::<_, _, #ty>(#m, #value))

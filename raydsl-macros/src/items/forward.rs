@@ -33,7 +33,6 @@ pub(crate) struct EnumArguments {
     forwarded: Vec<Ident>,
     /// The types of `shared(A, B)`: none if the kinds share one type of data or none.
     pub(crate) shared: Vec<syn::Type>,
-    errors: Errors,
 }
 
 /// One of the arguments.
@@ -56,9 +55,8 @@ impl syn::parse::Parse for Argument {
 }
 
 impl EnumArguments {
-    /// Reads the arguments and keeps what is wrong with them.
-    pub(crate) fn of(args: TokenStream) -> Self {
-        let mut errors = Errors::default();
+    /// Reads the arguments.
+    pub(crate) fn of(args: TokenStream, errors: &mut Errors) -> Self {
         let (mut forwarded, mut shared) = (Vec::new(), Vec::new());
         let all: Vec<String> =
             METHODS.iter().chain([&SURFACE]).map(|name| format!("`{name}`")).collect();
@@ -75,7 +73,7 @@ impl EnumArguments {
         for argument in written {
             match argument {
                 Argument::Shared(name, types) if shared.is_empty() => {
-                    shared = checked_types(&name, types, &mut errors);
+                    shared = checked_types(&name, types, errors);
                 }
                 Argument::Shared(name, _) => {
                     errors.at(name.span(), "`shared` is there twice", "write all types into one");
@@ -100,22 +98,24 @@ impl EnumArguments {
                 Argument::Forwarded(name) => forwarded.push(name),
             }
         }
-        Self { forwarded, shared, errors }
+        Self { forwarded, shared }
     }
 }
 
-/// Returns the types in `shared(..)`, or none if they are no list of two or three.
+/// Returns the types in `shared(..)`, each once and at most three, or none if they are no list.
 fn checked_types(name: &Ident, types: Vec<syn::Type>, errors: &mut Errors) -> Vec<syn::Type> {
     let text = |ty: &syn::Type| quote!(#ty).to_string();
-    for (i, ty) in types.iter().enumerate() {
-        if types[..i].iter().any(|before| text(before) == text(ty)) {
+    let mut once: Vec<syn::Type> = Vec::new();
+    for ty in &types {
+        if once.iter().any(|before| text(before) == text(ty)) {
             let what = format!("`{}` is there twice", text(ty));
             errors.at(
                 ty.span(),
                 what,
                 "kinds that share the same type share one slice: name it once",
             );
-            return Vec::new();
+        } else {
+            once.push(ty.clone());
         }
     }
     if types.len() < 2 {
@@ -123,29 +123,30 @@ fn checked_types(name: &Ident, types: Vec<syn::Type>, errors: &mut Errors) -> Ve
         errors.at(name.span(), what, "write `shared(A, B)`, or nothing if there is one type");
         return Vec::new();
     }
-    if types.len() > MOST_SHARED {
+    if once.len() > MOST_SHARED {
         let what = format!("the kinds of an enum share at most {MOST_SHARED} types of data");
         let help = "put some kinds into a tree of their own, and the trees into a struct of scenes: \
                     `#[derive(RayQuery)] struct Scenes<'a> { .. }`";
-        errors.at(types[MOST_SHARED].span(), what, help);
-        return Vec::new();
+        errors.at(once[MOST_SHARED].span(), what, help);
+        once.truncate(MOST_SHARED);
     }
-    types
+    if once.len() < 2 { Vec::new() } else { once }
 }
 
 /// Returns the methods that the attribute names.
 pub(crate) fn forwarded(
-    arguments: EnumArguments,
+    arguments: &EnumArguments,
     item: &syn::DeriveInput,
     e: &syn::DataEnum,
 ) -> TokenStream {
-    let EnumArguments { forwarded: names, mut errors, .. } = arguments;
+    let names = &arguments.forwarded;
     if names.is_empty() {
-        return errors.into_tokens();
+        return TokenStream::new();
     }
+    let mut errors = Errors::default();
     let variants: Vec<Variant<'_>> =
         e.variants.iter().flat_map(|v| v.fields.iter().map(|f| (&v.ident, &f.ty))).collect();
-    let (of_trait, methods): (Vec<_>, Vec<_>) = names.into_iter().partition(|n| n == SURFACE);
+    let (of_trait, methods): (Vec<_>, Vec<_>) = names.iter().partition(|n| *n == SURFACE);
     let methods = methods.iter().map(|name| method(name, &item.vis, &variants));
     let of_trait = of_trait.iter().map(|name| surface(name, item, &variants));
     let ty = &item.ident;
@@ -206,10 +207,10 @@ fn method(name: &Ident, vis: &syn::Visibility, variants: &[Variant<'_>]) -> Toke
     let span = name.span();
     let Form { params, args, result, doc } = Form::of(&name.to_string(), span);
     let _at = At::new(span);
-    let arms = variants.iter().map(|(variant, kind)| {
-        in_one_place(quote!(Self::#variant(kind) => <#kind>::#name(kind, #args)))
-    });
-    quote_spanned! {span=>
+    let arms = variants
+        .iter()
+        .map(|(variant, kind)| quote!(Self::#variant(kind) => <#kind>::#name(kind, #args)));
+    in_one_place(quote_spanned! {span=>
         #[doc = #doc]
         #vis fn #name(&self, #params) -> #result {
             use ::raydsl::__private::Lacking as _;
@@ -217,7 +218,7 @@ fn method(name: &Ident, vis: &syn::Visibility, variants: &[Variant<'_>]) -> Toke
                 #(#arms,)*
             }
         }
-    }
+    })
 }
 
 /// Returns the implementation of the trait `Surface`. All has the span of the name: there rustc

@@ -213,7 +213,7 @@ impl Method<'_> {
         let p = private();
         let Some(path) = self.through else { return quote!(()) };
         let text = path.to_token_stream().to_string();
-        quote!(#p::Through<{ #p::name(concat!(module_path!(), " ", #text)) }>)
+        quote!(#p::Through<{ #p::name(::core::concat!(::core::module_path!(), " ", #text)) }>)
     }
 
     pub(super) fn implementation(&self, kernel: &Kernel) -> TokenStream {

@@ -102,6 +102,17 @@ impl Struct<'_> {
         (declared.into_token_stream(), used.into_token_stream(), clause.into_token_stream())
     }
 
+    /// Returns the struct's generic parameters as an `impl` declares them, without defaults.
+    fn declared(&self) -> Vec<syn::GenericParam> {
+        let mut all: Vec<_> = self.item.generics.params.iter().cloned().collect();
+        for param in &mut all {
+            if let syn::GenericParam::Const(param) = param {
+                param.default = None;
+            }
+        }
+        all
+    }
+
     /// Returns the name of the struct of the views of all tables.
     fn tables_name(&self) -> Ident {
         format_ident!("__{}Tables", self.item.ident)
@@ -195,7 +206,7 @@ impl Struct<'_> {
     fn capture(&self) -> TokenStream {
         let (p, name) = (private(), &self.item.ident);
         let (_, used, clause) = self.generics();
-        let params: Vec<_> = self.item.generics.params.iter().collect();
+        let params = self.declared();
         let view = self.view(&syn::parse_quote!('__v));
         quote! {
             #[diagnostic::do_not_recommend]

@@ -2,7 +2,7 @@
 
 use proc_macro2::{Ident, Span, TokenStream};
 
-use super::{Block, Expr, Kind, Let, Step, Stmt, is_part};
+use super::{Block, Expr, Kind, Let, Step, Stmt};
 use crate::here::quote_here as quote;
 
 impl Kind {
@@ -26,6 +26,7 @@ impl Kind {
             | Self::Continue(_)
             | Self::Return(None)
             | Self::RefMut(_)
+            | Self::NewVariant { .. }
             | Self::Closure(_)
             | Self::Error => vec![],
             Self::Deref(a)
@@ -54,8 +55,9 @@ impl Kind {
             | Self::Associated { args, .. }
             | Self::Tuple(args)
             | Self::Array(args) => args.iter().collect(),
-            Self::Method { receiver, args, .. } => {
-                core::iter::once(&**receiver).chain(args).collect()
+            Self::Method { receiver: first, args, .. }
+            | Self::OfVariant { value: first, args, .. } => {
+                core::iter::once(&**first).chain(args).collect()
             }
             Self::Struct { fields, rest, .. } => {
                 fields.iter().map(|f| &f.1).chain(rest.as_deref()).collect()
@@ -233,7 +235,6 @@ impl Expr {
     pub(crate) fn is_total(&self) -> bool {
         let this = match &self.kind {
             Kind::Binary { op, .. } => !op.may_trap,
-            Kind::Associated { name, .. } if is_part(name) => true,
             Kind::Call { .. }
             | Kind::Associated { .. }
             | Kind::Method { .. }
@@ -259,8 +260,8 @@ impl Expr {
     /// Returns whether it calls or assigns something, so that its order matters.
     pub(crate) fn may_act(&self) -> bool {
         let this = match &self.kind {
-            Kind::Associated { name, .. } => !is_part(name),
             Kind::Call { .. }
+            | Kind::Associated { .. }
             | Kind::Method { .. }
             | Kind::Assign { .. }
             | Kind::OpAssign { .. } => true,

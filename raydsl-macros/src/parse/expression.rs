@@ -8,7 +8,7 @@ use syn::{BinOp, Lit, UnOp};
 use super::Parser;
 use super::attributes::{attributes, is_coherent};
 use super::condition::has_let;
-use super::pattern::variant_of;
+use super::pattern::{none_of, variant_of};
 use super::place::assignment;
 use super::refused::is_absent;
 use crate::model::{BinaryOp, Block, Expr, IntType, Kind, Step, Stmt};
@@ -160,9 +160,7 @@ impl Parser<'_> {
         if let Some(last) = p.path.segments.last().filter(|s| is_absent(&s.ident)) {
             return self.absent(&last.ident);
         }
-        if p.path.segments.last().is_some_and(|s| s.ident == "None")
-            && let Some(none) = variant_of(&p.path)
-        {
+        if let Some(none) = none_of(&p.path) {
             return none.value(vec![], p.span()).kind;
         }
         match p.path.get_ident() {

@@ -82,7 +82,7 @@ fn is_call_of_iter(e: &syn::Expr) -> bool {
     matches!(inside_parens(e), syn::Expr::MethodCall(c) if names.iter().any(|n| c.method == n))
 }
 
-fn method(receiver: Expr, name: &str, args: Vec<Expr>) -> Expr {
+pub(super) fn method(receiver: Expr, name: &str, args: Vec<Expr>) -> Expr {
     let (span, name) = (receiver.span, syn::Ident::new(name, receiver.span));
     let kind = Kind::Method { receiver: Box::new(receiver), name, turbofish: vec![], args };
     Expr { kind, span }
@@ -105,7 +105,7 @@ fn element(list: &Expr, index: Expr) -> Expr {
 }
 
 /// Returns an integer of the source.
-fn number(n: u32, span: Span) -> Expr {
+pub(super) fn number(n: u32, span: Span) -> Expr {
     let tokens = syn::LitInt::new(&n.to_string(), span).to_token_stream();
     Expr { kind: Kind::Int { tokens, suffix: None }, span }
 }

@@ -7,6 +7,7 @@ use syn::spanned::Spanned;
 
 use super::Parser;
 use super::attributes::is_coherent;
+use super::iteration::{method, number};
 use super::refused::is_absent;
 use super::types::is_type_name;
 use crate::generics::mentions;
@@ -48,7 +49,12 @@ pub(super) struct Variant {
     name: Ident,
 }
 
-/// Returns the variant that a path names: `Shape::Ball`, `Some`.
+/// Returns the variant that a path alone names, which may also be a constant: `Shape::Ball`, `None`.
+fn unit_variant_of(path: &syn::Path) -> Option<Variant> {
+    variant_of(path).filter(|v| is_camel_case(&v.name))
+}
+
+/// Returns the variant that a path in front of fields names: `Shape::Ball`, `Bsdf::GGX`, `Some`.
 pub(super) fn variant_of(path: &syn::Path) -> Option<Variant> {
     let (last, owner) = {
         let mut segments = path.segments.iter().rev();
@@ -60,13 +66,22 @@ pub(super) fn variant_of(path: &syn::Path) -> Option<Variant> {
         let p = private();
         return Some(Variant { ty: quote!(#p::Options), name });
     }
-    if !is_type_name(&owner?.ident) || is_absent(last) || !is_camel_case(last) {
+    if !is_type_name(&owner?.ident) || is_absent(last) || !is_type_name(last) {
         return None;
     }
     let mut ty = path.clone();
     ty.segments.pop();
     ty.segments.pop_punct();
     Some(Variant { ty: ty.to_token_stream(), name })
+}
+
+/// Returns the variant that `None` or `Option::None` names: a value of any type. The unit variants of
+/// other enums are constants.
+pub(super) fn none_of(path: &syn::Path) -> Option<Variant> {
+    let mut segments = path.segments.iter().rev();
+    let is_none = segments.next()?.ident == "None";
+    let of_option = segments.next().is_none_or(|owner| owner.ident == "Option");
+    if is_none && of_option { variant_of(path) } else { None }
 }
 
 /// Returns a name without the `r#` of raw identifiers in it, which functions have their names from.
@@ -82,32 +97,34 @@ fn is_camel_case(name: &Ident) -> bool {
 }
 
 impl Variant {
-    /// Returns a call of one of the functions that the derive writes for the variant.
-    fn call(&self, name: &str, args: Vec<Expr>, span: Span) -> Expr {
-        let name = Ident::new(&unraw(name), self.name.span());
-        Expr { kind: Kind::Associated { ty: self.ty.clone(), name, args }, span }
+    /// Returns a call of one of the methods that the derive writes for the variant.
+    fn part(&self, value: Expr, method: &str, args: Vec<Expr>, span: Span) -> Expr {
+        let method = Ident::new(&unraw(method), self.name.span());
+        Expr { kind: Kind::OfVariant { value: Box::new(value), method, args }, span }
     }
 
     /// Returns whether a value is of this variant.
     fn is(&self, value: &Expr, span: Span) -> Expr {
-        self.call(&format!("__is_{}", self.name), vec![value.clone()], span)
+        self.part(value.clone(), &format!("__is_{}", self.name), vec![], span)
     }
 
     /// Returns a field of a value of this variant.
     fn field(&self, value: &Expr, field: &str, span: Span) -> Expr {
-        self.call(&format!("__{}_{field}", self.name), vec![value.clone()], span)
+        self.part(value.clone(), &format!("__{}_{field}", self.name), vec![], span)
     }
 
     /// Returns a value of this variant without fields, or with fields that are not named.
     pub(super) fn value(&self, args: Vec<Expr>, span: Span) -> Expr {
-        self.call(&self.name.to_string(), args, span)
+        let (ty, name) = (self.ty.clone(), self.name.clone());
+        Expr { kind: Kind::Associated { ty, name, args }, span }
     }
 
     /// Returns a value of this variant with named fields.
     pub(super) fn structure(&self, fields: Vec<(String, Expr)>, span: Span) -> Expr {
-        let empty = self.call(&format!("__new_{}", self.name), vec![], span);
+        let kind = Kind::NewVariant { ty: self.ty.clone(), name: self.name.clone() };
+        let empty = Expr { kind, span };
         fields.into_iter().fold(empty, |value, (field, e)| {
-            self.call(&format!("__set_{}_{field}", self.name), vec![value, e], span)
+            self.part(value, &format!("__set_{}_{field}", self.name), vec![e], span)
         })
     }
 }
@@ -132,6 +149,18 @@ fn member(from: &Expr, member: TokenStream, span: Span) -> Expr {
     Expr { kind: Kind::Field { base: Box::new(from.clone()), member }, span }
 }
 
+/// Returns the condition of a slice pattern on the length; an array's is known.
+fn length(s: &syn::PatSlice, from: &Expr) -> Option<Expr> {
+    let span = s.span();
+    let (rest, others): (Vec<&Pat>, Vec<&Pat>) = s.elems.iter().partition(|p| is_rest(p));
+    let op = match (rest.len(), others.len()) {
+        (0, _) => "Eq",
+        (_, 0) => return None,
+        _ => "Ge",
+    };
+    Some(compare(op, &method(from.clone(), "len", vec![]), number(others.len() as u32, span), span))
+}
+
 impl Parser<'_> {
     /// Returns the condition under which `pat` matches `from`, `None` if it always does; its
     /// bindings are added to `lets`.
@@ -154,9 +183,9 @@ impl Parser<'_> {
                 lets.push(Stmt::bind(p.ident.clone(), p.mutability.is_some(), from.clone()));
                 p.subpat.as_ref().and_then(|(_, sub)| self.pattern(sub, from, lets))
             }
-            Pat::Path(p) if let Some(Variant { ty, name }) = variant_of(&p.path) => {
+            Pat::Path(p) if let Some(variant) = unit_variant_of(&p.path) => {
                 let (value, path) = (Box::new(from.clone()), p.to_token_stream());
-                Some(Expr { kind: Kind::Is { value, path, ty, name }, span })
+                Some(Expr { kind: Kind::Is { value, path, name: variant.name }, span })
             }
             Pat::Path(p) => {
                 let constant = Expr { kind: Kind::Path(p.to_token_stream()), span };
@@ -282,14 +311,14 @@ impl Parser<'_> {
         test
     }
 
-    /// Returns the condition of `[a, _, ..]`.
+    /// Returns the condition of `[a, _, ..]`: the list is as long, and the elements match.
     fn slice_pattern(
         &mut self,
         s: &syn::PatSlice,
         from: &Expr,
         lets: &mut Vec<Stmt>,
     ) -> Option<Expr> {
-        let mut test = None;
+        let mut test = length(s, from);
         for (i, p) in s.elems.iter().enumerate() {
             let mut after = s.elems.iter().skip(i + 1);
             if matches!(p, Pat::Rest(_)) && after.all(|p| matches!(p, Pat::Wild(_))) {

@@ -333,6 +333,26 @@ fn data_that_kinds_share() {
     one(quote!(shared(Vec3, f32), shared(u32, i32)), "`shared` is there twice", "into one");
 }
 
+/// Mistakes in the arguments and in the kinds are said at once.
+#[test]
+fn arguments_and_kinds() {
+    for (args, what) in [
+        (quote!(tangent), "cannot forward `tangent`"),
+        (quote!(shared(Vec3)), "whose kinds share different data"),
+    ] {
+        let item = quote!(
+            enum S {
+                A(Ball),
+                Nothing,
+            }
+        );
+        let found = errors(expand_primitive(args, item));
+        assert_eq!(found.len(), 2, "{found:#?}");
+        assert!(found.iter().any(|e| e.contains(what)), "{found:#?}");
+        assert!(found.iter().any(|e| e.contains("holds one primitive")), "{found:#?}");
+    }
+}
+
 #[test]
 fn derives() -> syn::Result<()> {
     for (item, what) in [

@@ -56,10 +56,10 @@ impl Enumeration<'_> {
         let (name, variants) = (&self.item.ident, self.variants);
         quote! {
             const _: () = {
-                #(assert!(
+                #(::core::assert!(
                     #name::#variants as i128 >= 0 && #name::#variants as i128 <= u32::MAX as i128,
-                    concat!(
-                        "the kind `", stringify!(#variants), "` of `", stringify!(#name),
+                    ::core::concat!(
+                        "the kind `", ::core::stringify!(#variants), "` of `", ::core::stringify!(#name),
                         "` has a number that a kernel's `u32` does not have",
                     ),
                 );)*

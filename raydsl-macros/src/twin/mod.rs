@@ -103,10 +103,10 @@ pub(crate) fn primitive_item(item: &syn::DeriveInput) -> TokenStream {
 fn dense(name: &syn::Ident, fields: &[syn::Field]) -> TokenStream {
     let types = fields.iter().map(|f| &f.ty);
     quote_spanned! {name.span()=>
-        const _: () = assert!(
+        const _: () = ::core::assert!(
             ::core::mem::size_of::<#name>() == #(::core::mem::size_of::<#types>())+*,
-            concat!(
-                "the primitive `", stringify!(#name), "` has gaps between its members\n",
+            ::core::concat!(
+                "the primitive `", ::core::stringify!(#name), "` has gaps between its members\n",
                 "  help: order them by size, or fill the gaps with members of your own",
             ),
         );

@@ -256,7 +256,7 @@ several!([A X 0 first, B Y 1 second, C Z 2 third] 3 [C] []);
 #[diagnostic::on_unimplemented(
     message = "the kinds of a primitive share `{Self}` and `{T}`, which the enum must name",
     label = "its primitives share `{Self}`, those of another kind `{T}`",
-    note = "name each type once on the enum, `#[primitive(shared({T}, {Self}))]`, and pass a slice of \
+    note = "name each type of element once on the enum, `#[primitive(shared(A, B))]`, and pass a slice of \
             each to the tree: `Bvh::build_sharing(&prims, (&first, &second), &config)`"
 )]
 #[doc(hidden)]

@@ -1,9 +1,9 @@
 //! The value along a ray through a cell: a cubic of the distance.
 
-use glam::{Vec3, vec2};
+use glam::{Vec3, vec2, vec3};
 
 use super::voxel::Corners;
-use crate::machine::functions::vec2;
+use crate::machine::functions::{vec2, vec3};
 use crate::machine::generic::{clamp, max, min, select};
 use crate::machine::margin::{Interval, Known};
 use crate::machine::{KnownFunction, Margin};
@@ -103,11 +103,17 @@ impl Cubic {
     /// Returns where the slope is 0.
     #[inline(always)]
     pub(super) fn extremes(&self) -> Extremes {
-        let square = self.c2 * self.c2 - 3.0 * self.c3 * self.c1;
+        // In units of the largest: squares of values themselves may be infinite, or vanish.
+        let size = max(max(self.c1.abs(), self.c2.abs()), max(self.c3.abs(), f32::MIN_POSITIVE));
+        let one = vec3(1.0, 1.0, 1.0);
+        // The bounds of the reference do not know that a quotient is at most 1.
+        let scaled = clamp(vec3(self.c1, self.c2, self.c3) / size, -one, one);
+        let (c1, c2, c3) = (scaled.x, scaled.y, scaled.z);
+        let square = c2 * c2 - 3.0 * c3 * c1;
         let root = max(square, 0.0).sqrt();
         // Both roots without a difference of like numbers (Press et al., "Numerical Recipes", 5.6).
-        let sum = -(self.c2 + root.copysign(self.c2));
-        let roots = vec2(root_or_none(sum, 3.0 * self.c3), root_or_none(self.c1, sum));
+        let sum = -(c2 + root.copysign(c2));
+        let roots = vec2(root_or_none(sum, 3.0 * c3), root_or_none(c1, sum));
         let first = if square > 0.0 { min(roots.x, roots.y) } else { 2.0 };
         let second = if square > 0.0 { max(roots.x, roots.y) } else { 2.0 };
         Extremes { first, second }

@@ -2,12 +2,13 @@
 
 use std::collections::HashMap;
 
-use glam::Vec3;
+use glam::{Vec3, vec3};
 
 use super::error::MeshError;
 
 use crate::bvh::behind;
 use crate::geometry::Ray;
+use crate::machine::functions::vec3;
 use crate::machine::generic::min;
 use crate::shading::Scene;
 use crate::{Type, kernel};
@@ -201,9 +202,12 @@ pub fn check_closed(triangles: impl IntoIterator<Item = [Vec3; 3]>) -> Result<()
     }
 }
 
-/// Returns whether a point is inside of a closed object of the scene.
+/// Returns whether a point is inside of a closed object of the scene, or behind a plane of it.
+///
+/// It follows a [`Cut`] along the fixed direction `(0.36, 0.48, 0.8)`, which is oblique to all axes: a
+/// plane parallel to it does not count.
 #[kernel]
 pub fn is_inside<S: Scene + ?Sized>(scene: &S, point: Vec3) -> bool {
-    let ray = Ray::new(point, Vec3::Z);
+    let ray = Ray::new(point, vec3(0.36, 0.48, 0.8));
     Cut::new(scene, ray).depth > 0
 }

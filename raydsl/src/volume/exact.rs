@@ -7,7 +7,7 @@ use super::integrator::{
 };
 use super::light::{MOST_OPTICAL_DEPTH, VolumeLight};
 use super::sample::{InCell, cell_at, gradient_in};
-use super::transfer::{TransferFunction, TransferKnot};
+use super::transfer::{FAR, TransferFunction, TransferKnot};
 use super::volume::{Volume, VolumeView};
 use super::voxel::{Corners, Voxel};
 use crate::geometry::{Ray, RayOn};
@@ -75,7 +75,7 @@ pub struct ShadedCell {
     /// Share of light without a direction, from 0 to 1.
     pub ambient: f32,
     /// Length of a gradient, in values per length of the world, from which on shading is full;
-    /// above 0.
+    /// above 0. At 0 every gradient shades.
     pub edge: f32,
     /// Unit vector towards the light.
     pub to_light: Vec3,
@@ -100,7 +100,8 @@ impl ShadedCell {
     /// Returns the factor of colours in a cell with this gradient.
     #[inline]
     pub(super) fn shade(self, gradient: Vec3) -> f32 {
-        let share = min(length(gradient) / self.edge, 1.0);
+        // Divided first: squares of long gradients would be infinite, and of short ones vanish.
+        let share = min(length(gradient / max(self.edge, f32::MIN_POSITIVE)), 1.0);
         1.0 + (lambert(gradient, self.to_light, self.ambient) - 1.0) * share
     }
 }
@@ -158,7 +159,8 @@ fn absorbed(
     width: f32,
     length: f32,
 ) -> Absorbed {
-    let per = 1.0 / (values.y - values.x);
+    // A step is an interval of no width: a place in it is one of its ends.
+    let per = 1.0 / max(values.y - values.x, f32::MIN_POSITIVE);
     // Places between the knots, at Gauss's four points.
     let pa = clamp((cubic.at(from + width * 0.069431844202973712) - values.x) * per, 0.0, 1.0);
     let pb = clamp((cubic.at(from + width * 0.33000947820757187) - values.x) * per, 0.0, 1.0);
@@ -220,7 +222,10 @@ impl KnownFunction for AbsorbedBy {
         let [c0, c1, c2, c3] = cubic else { return None };
         // The place between the knots, and the depth before, as polynomials of a share of the piece.
         let (x, w) = (from.value, width.value);
-        let per = 1.0 / (above.value - below.value);
+        // A step is an interval of no width, which has no places: it is taken for its beginning.
+        let span = above.value - below.value;
+        let is_wide = span >= f64::from(f32::MIN_POSITIVE);
+        let per = if is_wide { 1.0 / span } else { 0.0 };
         let p = [
             (c0.value + x * (c1.value + x * (c2.value + x * c3.value)) - below.value) * per,
             (c1.value + x * (2.0 * c2.value + x * (3.0 * c3.value))) * w * per,
@@ -265,10 +270,10 @@ impl KnownFunction for AbsorbedBy {
         let off: f64 =
             cubic.iter().chain([below, above]).map(|v| wide(v) + rounding * size(v)).sum();
         let steep = size(c1) + 2.0 * size(c2) + 3.0 * size(c3);
-        let gap = (above.value - below.value).abs() - wide(below) - wide(above);
+        let gap = span.abs() - wide(below) - wide(above);
         let off = 2.0 * (off + steep * (wide(from) + wide(width))) / gap.max(0.0) + rounding;
         // A gap of nothing says nothing.
-        let off = if off < 1.0 { off } else { 1.0 };
+        let off = if off < 1.0 && is_wide { off } else { 1.0 };
         let ends = [place(0.0), place(1.0)].map(|p| p.clamp(0.0, 1.0));
         let (low, high) = (ends[0].min(ends[1]) - off, ends[0].max(ends[1]) + off);
         let long = size(width) * size(length);
@@ -300,15 +305,19 @@ const DARK: f32 = 1e-9;
 #[inline(always)]
 fn thin_width(cubic: Cubic, interval: Interval, from: f32, width: f32, length: f32) -> f32 {
     let Interval { below, above, .. } = interval;
-    let per = (above.extinction - below.extinction) / (above.value - below.value);
+    let rise = above.extinction - below.extinction;
+    let per = rise / max(above.value - below.value, f32::MIN_POSITIVE);
     // An infinite slope times no difference would be no number.
     let per = clamp(per, -MOST_OPTICAL_DEPTH, MOST_OPTICAL_DEPTH);
     let begin = max(below.extinction + per * (cubic.at(from) - below.value), 0.0) * length;
     let growth = cubic.steepest(from, from + width) * per.abs() * length;
     let root = (begin * begin + 2.0 * growth * MOST_DEPTH).sqrt();
-    // A width of its own, so that the loop ends.
-    max(min(2.0 * MOST_DEPTH / max(begin + root, 1e-30), width), 1e-6)
+    // The whole rest of the piece, or a width of its own, so that the loop ends.
+    min(max(2.0 * MOST_DEPTH / max(begin + root, 1e-30), 1e-6), width)
 }
+
+/// Beyond this there are no knots but the far ones, behind which there is no interval.
+const NO_KNOT: f32 = 0.5 * FAR;
 
 /// A piece of a cell, within one interval, over which the value is monotone.
 #[derive(Clone, Copy, Debug, Type)]
@@ -331,7 +340,8 @@ fn piece_from(cubic: Cubic, extremes: Extremes, interval: Interval, x: f32, valu
     let at_stop = cubic.at(stop);
     let is_rising = at_stop > value;
     let bound = if is_rising { interval.above.value } else { interval.below.value };
-    let crosses = if is_rising { at_stop > bound } else { at_stop < bound };
+    let is_beyond = if is_rising { at_stop > bound } else { at_stop < bound };
+    let crosses = is_beyond & (bound.abs() < NO_KNOT);
     let is_behind = if is_rising { value >= bound } else { value <= bound };
     let mut end = stop;
     if crosses {
@@ -430,7 +440,7 @@ impl CellPieces {
 }
 
 /// Returns whether all values of a cell are in an interval without extinction, as in most cells
-/// where a function is a narrow peak.
+/// where a function is a narrow peak. The value at its upper end is behind a step there.
 #[kernel]
 #[inline(always)]
 fn is_clear(corners: Corners, interval: Interval, layout: GridLayout) -> bool {
@@ -440,7 +450,7 @@ fn is_clear(corners: Corners, interval: Interval, layout: GridLayout) -> bool {
     let b = max(max(high.x, high.y), max(high.z, high.w)) * layout.scale + layout.offset;
     (below.extinction + above.extinction == 0.0)
         & (min(a, b) >= below.value)
-        & (max(a, b) <= above.value)
+        & (max(a, b) < above.value)
 }
 
 /// Integrates cell by cell; `shade` returns a factor for the colours of a cell, seen from its
@@ -463,7 +473,7 @@ fn through_cells<T: Voxel, F: Fn(InCell) -> f32>(
     let mut walk = macro_walk(volume.grid(), part);
     while walk.is_inside && light.transmittance() >= least {
         if majorant_of(volume, walk.cell) > 0.0 {
-            let enough = least / light.transmittance();
+            let enough = least / max(light.transmittance(), f32::MIN_POSITIVE);
             let mut layer = Layer::new();
             let mut cells = walk.cells_of(layout.last_macro, layout.last_cell, -layout.low.floor());
             let mut pieces = CellPieces::none();
@@ -481,7 +491,8 @@ fn through_cells<T: Voxel, F: Fn(InCell) -> f32>(
                         let cubic = Cubic::through(found.corners, from, to);
                         let cubic = cubic.rescaled(layout.scale, layout.offset);
                         let length = (cells.leave - cells.enter) * part.scale;
-                        if cubic.c0 < interval.below.value || cubic.c0 > interval.above.value {
+                        // At a step the value is behind it, as for the function itself.
+                        if cubic.c0 < interval.below.value || cubic.c0 >= interval.above.value {
                             let index: u32 = volume.transfer().interval(cubic.c0);
                             interval = interval_at(volume.transfer(), index);
                         }

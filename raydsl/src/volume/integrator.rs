@@ -10,7 +10,7 @@ use super::voxel::Voxel;
 use super::walk::CellWalk;
 use crate::geometry::{Ray, RayOn, transform_ray};
 use crate::machine::functions::vec3;
-use crate::machine::generic::{length, max, min};
+use crate::machine::generic::{clamp, length, max, min};
 use crate::machine::{Machine, On};
 use crate::{Type, kernel};
 
@@ -117,6 +117,9 @@ pub(super) fn majorant_of<T: Voxel>(volume: &Volume<'_, T>, cell: Vec3) -> f32 {
 #[kernel]
 #[inline]
 pub(super) fn lambert(normal: Vec3, to_light: Vec3, ambient: f32) -> f32 {
+    // In units of the largest component: squares of others may be infinite, or vanish.
+    let size = max(normal.abs().max_element(), f32::MIN_POSITIVE);
+    let normal = clamp(normal / size, vec3(-1.0, -1.0, -1.0), vec3(1.0, 1.0, 1.0));
     let cosine = normal.dot(to_light).abs() / max(length(normal), f32::MIN_POSITIVE);
     ambient + (1.0 - ambient) * min(cosine, 1.0)
 }

@@ -66,7 +66,7 @@ impl Labels {
     #[inline]
     fn shade(self, gradient: Vec3) -> f32 {
         let shade = lambert(gradient, self.to_light, self.ambient);
-        if gradient.dot(gradient) > 0.0 { shade } else { 1.0 }
+        if gradient.abs().max_element() > 0.0 { shade } else { 1.0 }
     }
 }
 

@@ -57,13 +57,27 @@ pub(super) fn cell_at_distance<T: Voxel>(volume: &Volume<'_, T>, part: Inside, t
     cell_around(volume.grid(), part.origin + part.direction * t)
 }
 
+/// Colour and extinction at an end of a step.
+#[derive(Clone, Copy, Debug, Type)]
+struct SampledEnd {
+    sample: TransferSample,
+    is_whole: bool,
+}
+
+/// Returns colour and extinction at a distance, and whether there is a value.
+#[kernel]
+#[inline(always)]
+fn sampled_end_at<T: Voxel>(volume: &Volume<'_, T>, part: Inside, t: f32) -> SampledEnd {
+    let cell = cell_at_distance(volume, part, t);
+    let sample: TransferSample = volume.transfer().at(value_in(volume.grid(), cell));
+    SampledEnd { sample: where_whole(volume, cell.is_whole, sample), is_whole: cell.is_whole }
+}
+
 /// Returns colour and extinction at a distance.
 #[kernel]
 #[inline(always)]
 pub(super) fn sample_at<T: Voxel>(volume: &Volume<'_, T>, part: Inside, t: f32) -> TransferSample {
-    let cell = cell_at_distance(volume, part, t);
-    let sample: TransferSample = volume.transfer().at(value_in(volume.grid(), cell));
-    where_whole(volume, cell.is_whole, sample)
+    sampled_end_at(volume, part, t).sample
 }
 
 /// Returns colour and extinction at a distance; black where there is no extinction.
@@ -138,7 +152,7 @@ macro_rules! march {
                     // had.
                     i = max(i, (enter / width) as u32);
                     let end = min(leave / width, count).ceil() as u32;
-                    let enough = $this.least / light.transmittance();
+                    let enough = $this.least / max(light.transmittance(), f32::MIN_POSITIVE);
                     let mut layer = Layer::new();
                     $(
                         let $from = i as f32 * width;
@@ -247,14 +261,36 @@ fn mean_place(depth: f32) -> f32 {
     if depth < 1.0 { thin } else { thick }
 }
 
+/// Returns the colour at a place between two ends, from 0 to 1.
+#[kernel]
+#[inline(always)]
+fn color_between<T: Voxel>(
+    volume: &Volume<'_, T>,
+    a: SampledEnd,
+    b: SampledEnd,
+    place: f32,
+) -> Vec3 {
+    let (first, last) = (a.sample.color, b.sample.color);
+    let (mut from, mut to) = (first, last);
+    if volume.grid().has_gaps() {
+        // What is missing has no colour: it is that of the other end.
+        from = if a.is_whole { first } else { last };
+        to = if b.is_whole { last } else { first };
+    }
+    from + (to - from) * place
+}
+
 rule! {
     /// Steps with the mean extinction of both ends, and a colour that is linear between them:
     /// second order, and right where extinction is constant. One sample a step: steps share ends.
-    MeanExtinction by mean_extinction, |volume, part, from, to, last = (sample_at(volume, part, from))| {
-        let (a, b) = (last, sample_at(volume, part, to));
+    /// An end at missing voxels has no extinction, and the colour of the other one.
+    MeanExtinction by mean_extinction,
+    |volume, part, from, to, last = (sampled_end_at(volume, part, from))| {
+        let (a, b) = (last, sampled_end_at(volume, part, to));
         last = b;
-        let depth = (a.extinction + b.extinction) * 0.5 * ((to - from) * part.scale);
-        let color = a.color + (b.color - a.color) * mean_place(depth);
+        let sum = a.sample.extinction + b.sample.extinction;
+        let depth = sum * 0.5 * ((to - from) * part.scale);
+        let color = color_between(volume, a, b, mean_place(depth));
         Step { color, opacity: opacity_of(depth), depth }
     }
 }

@@ -10,7 +10,7 @@ use super::volume::Volume;
 use super::voxel::Voxel;
 use crate::geometry::Ray;
 use crate::machine::functions::vec3;
-use crate::machine::generic::length;
+use crate::machine::generic::{length, max};
 use crate::math::elementary::exp;
 use crate::sampling::Rng;
 use crate::{Type, kernel};
@@ -107,9 +107,10 @@ impl Fog {
         Collision { is_met, t, albedo: self.albedo, emission, anisotropy: self.anisotropy }
     }
 
-    /// Returns the transmittance between `t_min` and `t_max`.
+    /// Returns the transmittance between `t_min` and `t_max`; 1 where that is empty.
     #[inline]
     pub fn transmittance(self, ray: Ray) -> f32 {
-        exp(-(self.extinction * length(ray.direction) * (ray.t_max - ray.t_min)))
+        let way = max(ray.t_max - ray.t_min, 0.0);
+        exp(-(self.extinction * length(ray.direction) * way))
     }
 }

@@ -6,7 +6,7 @@ use glam::{Vec2, Vec3};
 
 use super::error::TransferError;
 use super::integral::{TransferIntegral, integrals, mean_between};
-use crate::machine::generic::clamp;
+use crate::machine::generic::{max, min};
 use crate::machine::table_view;
 use crate::machine::wgsl::BufferKey;
 use crate::machine::{
@@ -54,7 +54,7 @@ pub struct TransferLayout {
 const BINS: usize = 1024;
 
 /// Beyond this no value is told from a knot at an end.
-const FAR: f32 = f32::MAX / 4.0;
+pub(super) const FAR: f32 = f32::MAX / 4.0;
 
 /// Extinction of opacity 1, times the unit distance.
 const OPAQUE: f64 = 1e6;
@@ -329,7 +329,10 @@ fn refine([from, to]: [(f64, f64); 2], unit: f64, depth: u32, all: &mut Vec<(f32
         let linear = ends[0] + (ends[1] - ends[0]) * share;
         (-(-linear * unit).exp_m1() - opacity).abs()
     };
-    let worst = [0.25, 0.5, 0.75].map(error).into_iter().fold(0.0, f64::max);
+    // Next to opacity 1 the error is greatest beside an end.
+    let inner = (1..16).map(|i| f64::from(i) / 16.0);
+    let shares = inner.chain([1.0 / 256.0, 255.0 / 256.0]);
+    let worst = shares.map(error).fold(0.0, f64::max);
     let middle = ((from.0 + to.0) * 0.5, (from.1 + to.1) * 0.5);
     let is_between = (middle.0 as f32) > from.0 as f32 && (middle.0 as f32) < to.0 as f32;
     if depth == 0 || worst <= OPACITY_ERROR || !is_between {
@@ -574,7 +577,9 @@ impl Operation for FindInterval<'_> {
 #[inline(always)]
 fn interval_by_bins(function: &TransferFunction, value: f32) -> u32 {
     let TransferLayout { first, per_value, last_bin, last } = function.layout();
-    let bin: u32 = function.bin(clamp((value - first) * per_value + 1.0, 0.0, last_bin) as u32);
+    // A NaN becomes 0.
+    let place = min(max(0.0, (value - first) * per_value + 1.0), last_bin);
+    let bin: u32 = function.bin(place as u32);
     let mut i = bin >> 1;
     if bin & 1 != 0 {
         // A bin may have several knots.
@@ -607,11 +612,11 @@ fn interval_by_search(function: &TransferFunction, value: f32) -> u32 {
     first
 }
 
-/// Returns the share of the way from one value to another, from 0 to 1.
+/// Returns the share of the way from one value to another, from 0 to 1. A NaN becomes 0.
 #[kernel]
 #[inline(always)]
 pub(super) fn share_of(value: f32, from: f32, to: f32) -> f32 {
-    clamp((value - from) / (to - from), 0.0, 1.0)
+    min(max(0.0, (value - from) / (to - from)), 1.0)
 }
 
 /// Returns colour and extinction of a value.

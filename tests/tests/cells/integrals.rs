@@ -2,7 +2,7 @@
 
 use raydsl::prelude::*;
 use raydsl::volume::cells::{CellData, CellGrid, CellMesh, CellVolume};
-use raydsl::volume::{ExactCell, VolumeLight};
+use raydsl::volume::{ExactCell, TransferFunction, VolumeLight};
 use raydsl_tests::rng::Rng;
 use raydsl_tests::scaled;
 
@@ -82,6 +82,21 @@ fn integrals_are_those_of_the_oracle() {
             assert!(worst < 1e-4, "{fill:?}, {i}: {worst}");
         }
     }
+}
+
+/// A value on a step of the function is behind it, as for the function itself.
+#[test]
+fn values_on_a_step() {
+    let cells = filled(uvec3(1, 1, 2), Fill::Hexahedra, 0.0, &mut Rng::of("step"));
+    let mesh = CellMesh::new(&cells.points, &cells.vertices, &cells.kinds).expect("a mesh");
+    let values = vec![1.0f32; mesh.cells()];
+    let grid = CellGrid::new(&mesh, CellData::Cells(&values)).expect("a grid");
+    let step = [(1.0, 0.0), (1.0, 2.0)];
+    let step = TransferFunction::from_extinction(&[(1.0, Vec3::ONE)], &step).expect("sorted");
+    let volume = CellVolume::new(&grid, step);
+    let ray = Ray::new(vec3(0.3, 0.6, -1.0), Vec3::Z);
+    let light = volume.integrate(&ExactCell::new().least(0.0), ray, VolumeLight::new());
+    assert!((light.depth - 4.0).abs() < 1e-5, "{light:?}");
 }
 
 /// A ray through a point.

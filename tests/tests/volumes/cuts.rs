@@ -5,7 +5,7 @@ use raydsl::prelude::*;
 use raydsl::shading::{Mesh, MeshAttributes, Surface};
 use raydsl::volume::{
     Cut, ExactCell, Grid, GridConfig, MeshError, TransferFunction, Volume, VolumeLight,
-    check_closed,
+    check_closed, is_inside,
 };
 use raydsl::{assert_variants_agree, kernel, testing};
 use raydsl_tests::rng::Rng;
@@ -21,6 +21,24 @@ pub(crate) struct Ball {
 
 #[kernel]
 impl Surface for Ball {
+    fn surface(&self, ray: Ray, hit: Hit) -> SurfacePoint {
+        self.surface_point(ray, hit)
+    }
+
+    fn albedo(&self, _ray: Ray, _hit: Hit) -> Vec3 {
+        Vec3::ONE
+    }
+}
+
+/// Half of space: all that is behind a plane.
+#[primitive(plane(normal, offset))]
+struct Half {
+    normal: Vec3,
+    offset: f32,
+}
+
+#[kernel]
+impl Surface for Half {
     fn surface(&self, ray: Ray, hit: Hit) -> SurfacePoint {
         self.surface_point(ray, hit)
     }
@@ -232,6 +250,39 @@ fn meshes_are_cut_at_edges_and_vertices() {
         for (i, (a, b)) in expected.iter().zip(&found).enumerate() {
             let off = (a.0 - b.0).abs().max((a.1 - b.1).abs());
             assert!(off < 1e-3, "WGSL: {:?}: {b:?}, not {a:?}", rays[i]);
+        }
+    }
+}
+
+#[test]
+fn points_are_inside_or_outside() {
+    let ball = [Ball { center: vec3(1.0, 0.0, 0.0), radius: 0.5 }];
+    let ball = &ball[..];
+    let (vertices, triangles) = icosphere(2);
+    let tree = Bvh::build_sharing(&triangles, &vertices, &BuildConfig::default()).expect("a tree");
+    let mesh = Mesh::new(&tree, MeshAttributes::default()).expect("no attributes");
+    for axis in [Vec3::X, Vec3::Y, Vec3::Z, vec3(0.6, 0.0, -0.8)] {
+        for axis in [axis, -axis] {
+            let middle = vec3(1.0, 0.0, 0.0);
+            assert!(is_inside(ball, middle + axis * 0.4), "{axis}");
+            assert!(!is_inside(ball, middle + axis * 0.6), "{axis}");
+            assert!(is_inside(&mesh, axis * 0.8), "{axis}");
+            assert!(!is_inside(&mesh, axis * 1.2), "{axis}");
+        }
+    }
+    // Planes along each axis, and between two.
+    for normal in [Vec3::X, -Vec3::X, Vec3::Y, -Vec3::Y, Vec3::Z, -Vec3::Z, vec3(0.6, 0.8, 0.0)] {
+        let half = [Half { normal, offset: 0.5 }];
+        let half = &half[..];
+        let behind = kernel!(|p: Vec3| {
+            let is_behind = is_inside(half, p);
+            if is_behind { 1.0 } else { 0.0 }
+        });
+        let inputs = [-7.0, 0.25, 0.75, 7.0].map(|along| (normal * along,));
+        let expected = [1.0, 1.0, 0.0, 0.0];
+        assert_eq!(inputs.map(|p| behind.call(p)), expected, "{normal}");
+        if normal == Vec3::X {
+            assert_variants_agree!(&behind, &inputs);
         }
     }
 }

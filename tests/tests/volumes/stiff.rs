@@ -3,8 +3,8 @@
 use raydsl::prelude::*;
 use raydsl::testing;
 use raydsl::volume::{
-    Adaptive, Euler, ExactCell, MeanExtinction, Midpoint, PreIntegrated, TransferFunction,
-    VolumeLight,
+    Adaptive, Euler, ExactCell, ExponentialLeft, MeanExtinction, Midpoint, PreIntegrated,
+    ShadedCell, TransferFunction, VolumeLight,
 };
 
 use super::{along, column, linear, volume};
@@ -134,6 +134,113 @@ fn two_layers() {
     let volume = volume(&grid, layers.expect("a function"));
     let expected = 0.63973704534668025 - 0.05 * (-4.0f64).exp();
     assert_near("layers", &volume, along(), [expected, -(-4.0f64).exp_m1()]);
+}
+
+/// A value on a step is behind it, as for the function itself.
+#[test]
+fn values_on_a_step() {
+    let step = |value: f32, before: f32| {
+        let knots = [(value, before), (value, 2.0)];
+        TransferFunction::from_extinction(&[(value, Vec3::ONE)], &knots).expect("a function")
+    };
+    let grid = column(2, 2.0, |_| 1.0);
+    let flat = volume(&grid, step(1.0, 0.0));
+    assert_eq!(flat.transfer().at(1.0).extinction, 2.0);
+    let alpha = -(-4.0f64).exp_m1();
+    assert_near("on a step", &flat, along(), [alpha, alpha]);
+    let shaded = ShadedCell::new(Vec3::Z, 1.0).least(0.0);
+    let light = flat.integrate(&shaded, along(), VolumeLight::new());
+    assert!(off(light.opacity(), alpha) < 1e-6, "{light:?}");
+    // Of many cells before some end beyond the step, by one rounding.
+    for i in 0..200 {
+        let grid = column(2, 2.0, |t| if t > 0.0 { 0.7 } else { -0.01 * i as f32 });
+        let volume = volume(&grid, step(0.7, 0.5));
+        let exact = ExactCell::new().least(0.0);
+        let light = volume.integrate(&exact, along(), VolumeLight::new());
+        assert!(off(light.depth, 2.5) < 1e-5, "{i}: {light:?}");
+    }
+}
+
+/// A thick layer, thinner than any part into which a piece is divided.
+#[test]
+fn a_layer_thinner_than_all_parts() {
+    let layer = [(0.0, 6e7), (1e-8, 6e7), (1e-8, 0.0)];
+    let layer = TransferFunction::from_extinction(&[(0.0, Vec3::ONE)], &layer).expect("sorted");
+    let grid = column(1, 1.0, |t| t);
+    let depth = 6e7 * f64::from(1e-8f32);
+    let alpha = -(-depth).exp_m1();
+    assert_near("thin layer", &volume(&grid, layer), along(), [alpha, alpha]);
+}
+
+/// Where nothing is to be left out, what is behind any depth counts.
+#[test]
+fn nothing_is_left_out() {
+    let grid = column(64, 64.0, |_| 1.0);
+    let volume = volume(&grid, linear(20.0, 1.0, 1.0));
+    let none = VolumeLight::new();
+    for light in [
+        volume.integrate(&ExactCell::new().least(0.0), along(), none),
+        volume.integrate(&ExponentialLeft::new(1.0).least(0.0), along(), none),
+        volume.integrate(&Midpoint::new(1.0).least(0.0), along(), none),
+        volume.integrate(&MeanExtinction::new(1.0).least(0.0), along(), none),
+        volume.integrate(&PreIntegrated::new(1.0).least(0.0), along(), none),
+    ] {
+        assert!(off(light.depth, 1280.0) < 1e-5, "{light:?}");
+    }
+}
+
+/// Beyond the far ends of a function it is constant.
+#[test]
+fn values_beyond_the_far_ends() {
+    let constant = [(0.0, Vec3::ONE)];
+    let constant = TransferFunction::from_extinction(&constant, &[(0.0, 2.0)]).expect("sorted");
+    for most in [1.5e38, -1.5e38] {
+        let grid = column(1, 1.0, |t| t * most);
+        let volume = volume(&grid, constant.clone());
+        let light = volume.integrate(&ExactCell::new(), along(), VolumeLight::new());
+        assert!(off(light.depth, 2.0) < 1e-5, "{most:e}: {light:?}");
+    }
+}
+
+/// Shading is of directions, also of gradients whose squares are infinite or vanish.
+#[test]
+fn gradients_of_any_length_shade() {
+    let homogeneous = TransferFunction::from_extinction(&[(0.0, Vec3::ONE)], &[(0.0, 1.0)]);
+    let homogeneous = homogeneous.expect("a function");
+    let alpha = -(-1.0f64).exp_m1();
+    let radiance = |grid: &raydsl::volume::Grid<'_, f32>, edge: f32| {
+        let shaded = ShadedCell::new(vec3(0.6, 0.0, 0.8), edge).least(0.0);
+        let volume = volume(grid, homogeneous.clone());
+        volume.integrate(&shaded, along(), VolumeLight::new()).radiance.x
+    };
+    for scale in [2f32.powi(-90), 1.0, 2f32.powi(80)] {
+        let grid = column(1, 1.0, |t| t * scale);
+        for edge in [0.0, 0.5 * scale] {
+            let found = radiance(&grid, edge);
+            // 0.3 of ambient light, and a cosine of 0.8.
+            let expected = (0.3 + 0.7 * 0.8) * alpha;
+            assert!(off(found, expected) < 1e-5, "{scale:e}, {edge:e}: {found}, not {expected}");
+        }
+    }
+    // Where nothing changes there is no border, whatever the edge.
+    let found = radiance(&column(1, 1.0, |_| 1.0), 0.0);
+    assert!(off(found, alpha) < 1e-5, "{found}");
+}
+
+/// Missing voxels have no colour, in steps that they end either.
+#[test]
+fn what_is_missing_has_no_color() {
+    let colors = [(0.0, Vec3::Z), (1.0, Vec3::X)];
+    let function = TransferFunction::from_extinction(&colors, &[(0.0, 1.0)]).expect("sorted");
+    let grid = column(3, 3.0, |t| if t > 0.9 { f32::NAN } else { 1.0 });
+    let volume = volume(&grid, function);
+    let light = volume.integrate(&MeanExtinction::new(1.0), along(), VolumeLight::new());
+    assert_eq!(light.radiance.z, 0.0, "{light:?}");
+    // A whole step, and one whose end is missing.
+    assert!(off(light.depth, 1.5) < 1e-6, "{light:?}");
+    let back = Ray::new(vec3(0.5, 0.5, 4.0), -Vec3::Z);
+    let light = volume.integrate(&MeanExtinction::new(1.0), back, VolumeLight::new());
+    assert!(light.radiance.z == 0.0 && light.radiance.x > 0.5, "{light:?}");
 }
 
 /// A narrow peak of the transfer function, in any number of cells.

@@ -103,6 +103,23 @@ fn surfaces_and_values(config: GridConfig) {
     assert_close(&kernel, &inputs, 1e-4);
 }
 
+/// Values whose squares are infinite, or vanish, turn along a ray as all others do.
+#[test]
+fn values_of_any_size_have_turns() {
+    let ray = Ray::new(Vec3::splat(-1.0), Vec3::ONE);
+    for most in [1.0f32, 1e20, 1e-24] {
+        let mut voxels = [most; 8];
+        (voxels[0], voxels[7]) = (0.0, 0.0);
+        let grid = Grid::new(&voxels[..], uvec3(2, 2, 2), GridConfig::new()).expect("a grid");
+        // Along the diagonal the value is `3 t (1 - t)` of that.
+        let greatest = grid.greatest(ray) / most;
+        assert!((greatest - 0.75).abs() < 1e-6, "{most:e}: {greatest}");
+        let hit = grid.first_surface(ray, 0.5 * most).expect("a surface");
+        let place = 0.5 - (1.0f32 / 12.0).sqrt();
+        assert!((hit.t - (1.0 + place)).abs() < 1e-5, "{most:e}: {hit:?}");
+    }
+}
+
 /// Flat cells, cells at the value itself, and a grid of one voxel.
 #[test]
 fn surfaces_of_flat_fields() {

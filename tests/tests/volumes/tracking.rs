@@ -3,7 +3,7 @@
 use raydsl::prelude::*;
 use raydsl::testing;
 use raydsl::volume::{
-    ExactCell, Grid, GridConfig, TransferFunction, Volume, VolumeLight, delta_tracking,
+    ExactCell, Fog, Grid, GridConfig, TransferFunction, Volume, VolumeLight, delta_tracking,
     jackknife_transmittance, ratio_transmittance,
 };
 use raydsl_tests::rng::Rng as Random;
@@ -102,6 +102,17 @@ fn peaks_in_thick_macro_cells_have_their_own_depth() {
         let delta = f64::from(passed) / 2000.0;
         let sigma = (expected * (1.0 - expected) / 2000.0).sqrt();
         assert!((delta - expected).abs() < 4.5 * sigma, "{delta}, not {expected}");
+    }
+}
+
+/// A range that ends before it begins absorbs nothing, and adds nothing.
+#[test]
+fn empty_ranges_of_fog_are_clear() {
+    let fog = Fog { extinction: 0.5, albedo: Vec3::ONE, anisotropy: 0.0 };
+    let ray = Ray::new(Vec3::ZERO, Vec3::Z);
+    for (first, last, expected) in [(1.0, 3.0, (-1.0f32).exp()), (2.0, 2.0, 1.0), (3.0, 1.0, 1.0)] {
+        let found = fog.transmittance(ray.with_range(first, last));
+        assert!((found - expected).abs() < 1e-6, "{first} to {last}: {found}");
     }
 }
 

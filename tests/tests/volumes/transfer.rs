@@ -1,6 +1,7 @@
 //! Means of a transfer function between two values.
 
 use raydsl::prelude::*;
+use raydsl::testing;
 use raydsl::volume::TransferFunction;
 use raydsl_tests::rng::Rng;
 
@@ -105,4 +106,29 @@ fn far_values_are_those_of_the_ends() {
         vec4(sample.color.x, sample.color.y, sample.color.z, sample.extinction)
     });
     assert_close(&kernel, &[(7.0,), (-7.0,), (1e30,), (-1e30,)], 1e-6);
+    // A NaN is the least value.
+    assert_eq!(ramp.at(f32::NAN), ramp.at(-7.0));
+    for variant in [Variant::Scalar, Variant::Packet4, Variant::Packet8, Variant::Packet16] {
+        if testing::can_run(variant, "a NaN") {
+            let found = testing::run(&kernel, variant, &[(f32::NAN,)])[0];
+            assert_eq!(found, vec4(1.0, 0.0, 0.0, 0.5), "{}", variant.name());
+        }
+    }
+}
+
+/// Between two knots opacity is off by less than 0.0005, also next to opacity 1, where extinction
+/// rises by a million.
+#[test]
+fn extinction_follows_opacity() {
+    for [from, to] in [[0.99f32, 1.0], [1.0, 0.99], [0.0, 1.0], [0.3, 0.7], [0.999_966, 0.4517]] {
+        let ends = [(0.0, from), (1.0, to)];
+        let function = TransferFunction::new(&[(0.0, Vec3::ONE)], &ends, 1.0).expect("sorted");
+        for i in 0..=20_000 {
+            let value = i as f32 / 20_000.0;
+            let opacity = -(-f64::from(function.at(value).extinction)).exp_m1();
+            let expected = f64::from(from) + f64::from(to - from) * f64::from(value);
+            let off = (opacity - expected).abs();
+            assert!(off < 5e-4, "{from} to {to}, at {value}: {opacity}, off by {off}");
+        }
+    }
 }

@@ -62,16 +62,17 @@ macro_rules! integrator {
 /// Number of cells whose light is one sum without its rounding errors.
 const RUN: u32 = 16;
 
-/// Returns whether all values of a part are in an interval without extinction.
+/// Returns whether all values of a part are in an interval without extinction; the value at its
+/// upper end is behind a step there.
 #[kernel]
 #[inline]
 fn is_clear(part: CellPart, interval: Interval) -> bool {
     let Interval { below, above, .. } = interval;
     (below.extinction + above.extinction == 0.0)
         & (part.from >= below.value)
-        & (part.from <= above.value)
+        & (part.from < above.value)
         & (part.to >= below.value)
-        & (part.to <= above.value)
+        & (part.to < above.value)
 }
 
 /// Integrates cell by cell; `shade` returns a factor for the colours of a tetrahedron.
@@ -105,7 +106,8 @@ fn through_cells<F: Fn(u32) -> f32>(
                     let length = (part.leave - part.enter) * line.scale;
                     let cubic = Cubic { c0: part.from, c1: part.to - part.from, c2: 0.0, c3: 0.0 };
                     let (radiance, depth) = (layer.radiance, layer.depth);
-                    if cubic.c0 < interval.below.value || cubic.c0 > interval.above.value {
+                    // At a step the value is behind it, as for the function itself.
+                    if cubic.c0 < interval.below.value || cubic.c0 >= interval.above.value {
                         let index: u32 = volume.transfer().interval(cubic.c0);
                         interval = interval_at(volume.transfer(), index);
                     }
