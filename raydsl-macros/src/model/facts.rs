@@ -259,14 +259,14 @@ impl Expr {
 
     /// Returns whether it calls or assigns something, so that its order matters.
     pub(crate) fn may_act(&self) -> bool {
-        let this = match &self.kind {
+        let this = matches!(
+            self.kind,
             Kind::Call { .. }
-            | Kind::Associated { .. }
-            | Kind::Method { .. }
-            | Kind::Assign { .. }
-            | Kind::OpAssign { .. } => true,
-            _ => false,
-        };
+                | Kind::Associated { .. }
+                | Kind::Method { .. }
+                | Kind::Assign { .. }
+                | Kind::OpAssign { .. }
+        );
         this || self.kind.children().iter().any(|e| e.may_act())
     }
 
