@@ -330,6 +330,8 @@ fn channels_of_every_variant() -> Result<(), Box<dyn Error>> {
     let kernel = pixel!(bvh);
     let sampling = Sampling::new(70).seed(5);
     let mut expected = Film::<Pixel>::of_channels(37, 21);
+    // Without samples there is no error.
+    assert_eq!(expected.channel_errors().pixels()[0].depth, 0.0);
     SimpleScheduler::new().variant(Variant::Scalar).accumulate(
         &camera(),
         &kernel,

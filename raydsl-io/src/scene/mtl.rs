@@ -59,6 +59,13 @@ pub(super) fn rest(line: &[u8]) -> String {
     String::from_utf8_lossy(line[end..].trim_ascii()).into_owned()
 }
 
+/// Returns a line without its comment, which begins with a word: names may have a `#` within.
+pub(super) fn without_comment(line: &[u8]) -> &[u8] {
+    let begins = |i: usize| line[i] == b'#' && (i == 0 || line[i - 1].is_ascii_whitespace());
+    let end = (0..line.len()).find(|i| begins(*i)).unwrap_or(line.len());
+    &line[..end]
+}
+
 impl Library {
     pub(super) fn new(obj: &Source) -> Self {
         let folder = obj.path.parent().unwrap_or(Path::new("")).into();
@@ -117,7 +124,7 @@ impl Library {
         let mut source = Source::open(path, "MTL")?;
         let (mut stored, mut line) = (None, Vec::new());
         while source.next_line(&mut line)? {
-            let line = line.split(|b| *b == b'#').next().unwrap_or_default();
+            let line = without_comment(&line);
             if line.trim_ascii().split(u8::is_ascii_whitespace).next() == Some(b"newmtl") {
                 let name = rest(line);
                 let next = Stored { name, ..Stored::default() };

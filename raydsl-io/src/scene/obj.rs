@@ -75,7 +75,7 @@ impl Obj {
     }
 
     fn add(&mut self, source: &Source, line: &[u8]) -> Result<(), LoadError> {
-        let line = line.split(|b| *b == b'#').next().unwrap_or_default();
+        let line = mtl::without_comment(line);
         let mut words = line.split(u8::is_ascii_whitespace).filter(|word| !word.is_empty());
         let rest = || mtl::rest(line);
         let wrong = |what: String| source.bad_line(what, REMEDY);

@@ -448,6 +448,21 @@ fn obj_has_materials() {
     assert_eq!((scene.images.len(), scene.images[0].name.as_str()), (1, "dots.png"));
 }
 
+/// A `#` within a word is part of a name.
+#[test]
+fn names_may_have_a_number_sign() {
+    let folder = Folder::obj();
+    let materials = "newmtl paint#1 # the first\nKd 1 0 0\nnewmtl paint#2\nKd 0 1 0\n";
+    folder.write("scene.mtl", materials.as_bytes());
+    let text = "mtllib scene.mtl\nv 0 0 0 # a corner\nv 1 0 0\nv 0 1 0\nusemtl paint#2\nf 1 2 3\n";
+    folder.write("scene.obj", text.as_bytes());
+    let scene = folder.load("scene.obj").expect("a scene");
+    let names: Vec<&str> = scene.materials.iter().map(|m| m.name.as_str()).collect();
+    assert_eq!(names, ["paint#1", "paint#2"]);
+    let used: Vec<usize> = scene.meshes.iter().map(|mesh| mesh.material).collect();
+    assert_eq!(used, [1]);
+}
+
 #[test]
 fn errors_of_obj_and_mtl_name_their_lines() {
     let cases = [

@@ -106,6 +106,11 @@ impl Context {
     #[must_use]
     pub fn with_operations_fused(mut self) -> Self {
         self.spirv = None;
+        #[cfg(not(target_family = "wasm"))]
+        {
+            // What was found of exact operations holds no more.
+            self.exactness = OnceLock::new();
+        }
         self
     }
 

@@ -238,6 +238,8 @@ fn fused(a: f32, b: f32, c: f32) -> f32 {
         let Some(context) = crate::gpu::tests::context() else {
             return;
         };
+        // Also if it was not before.
+        let _ = context.is_exact();
         let error = context.with_operations_fused().require_exact().expect_err("no SPIR-V");
         let text = error.to_string();
         assert!(text.contains("SPIR-V") && text.contains("Arithmetic::Fast"), "{text}");

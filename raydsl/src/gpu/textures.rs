@@ -24,8 +24,11 @@ struct Upload {
     bytes: u64,
 }
 
-/// The key of an owner's texture: the part, and the format of its texels.
-type Name = (u64, u32, TexelFormat);
+/// The key of an owner's texture: the part, and how its texels are read. The same texels may be several
+/// textures.
+type Name = (u64, u32, Shape);
+/// What a view of texels depends on: their format, their numbers, the levels, and whether it is a volume.
+type Shape = (TexelFormat, [u32; 3], u32, bool);
 /// The key of a sampler.
 type Reading = ([Address; 3], bool);
 
@@ -73,13 +76,17 @@ impl Textures {
         source: Source<'_, '_>,
     ) -> Result<BoundTexture, GpuError> {
         let Texture { key, layout, .. } = texture;
-        let name = (key.id, key.part, layout.format);
+        let shape = (layout.format, layout.size, layout.levels, layout.is_volume);
+        let name = (key.id, key.part, shape);
         let known = self.uploads.get(&name).filter(|upload| upload.version == key.version);
         let view = match known {
             Some(upload) => upload.view.clone(),
             None => {
-                // Frees its memory first.
-                self.uploads.remove(&name);
+                // Frees the memory of what it was before first.
+                let is_of_now = |upload: &Upload| upload.version == key.version;
+                self.uploads.retain(|(id, part, _), upload| {
+                    (*id, *part) != (key.id, key.part) || is_of_now(upload)
+                });
                 let bytes = texels(texture, source)?;
                 let sent = bytes.len() as u64;
                 let view = send(gpu, texture, &bytes)?;

@@ -74,7 +74,8 @@ pub(super) fn write_png(
     (width, height): (u32, u32),
     format: image::ExtendedColorType,
 ) -> Result<(), image::ImageError> {
-    image::save_buffer(path, bytes, width, height, format)
+    // Whatever the name ends with.
+    image::save_buffer_with_format(path, bytes, width, height, format, image::ImageFormat::Png)
 }
 
 #[cfg(feature = "exr")]

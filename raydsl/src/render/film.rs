@@ -109,7 +109,9 @@ impl<R: Type> Film<R> {
     /// Returns the standard error of the mean of every number of the results, as
     /// [`Film::standard_error`]; where there is no number, it is 0.
     pub fn channel_errors(&self) -> Image<R> {
-        self.of_each_channel(false, |count, _, m2| (variance(count, m2) / count as f64).sqrt())
+        self.of_each_channel(false, |count, _, m2| {
+            (variance(count, m2) / count.max(1) as f64).sqrt()
+        })
     }
 
     /// Returns `f` of the count, the mean and the sum of squared deviations of every number.

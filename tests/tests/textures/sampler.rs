@@ -160,6 +160,32 @@ fn a_kernel_has_sixteen() -> Result<(), TextureError> {
     Ok(())
 }
 
+/// The same texels as two pictures of other sizes.
+#[cfg(feature = "gpu")]
+#[test]
+fn sizes_of_one_slice_are_told_apart() -> Result<(), Box<dyn std::error::Error>> {
+    use raydsl::gpu::GpuScheduler;
+    if gpu().is_none() {
+        return Ok(());
+    }
+    let gpu = GpuScheduler::new()?;
+    let texels = texels::<Unorm8>(77, 57);
+    let wide = TextureRef2::new(&texels, [11, 7], config())?;
+    let tall = TextureRef2::new(&texels, [7, 11], config())?;
+    let both = kernel!(|uv: Vec2| vec2(tex2(&wide, uv), tex2(&tall, uv)));
+    let (of_wide, of_tall) =
+        (kernel!(|uv: Vec2| tex2(&wide, uv)), kernel!(|uv: Vec2| tex2(&tall, uv)));
+    let places = [0.1, 0.3, 0.55, 0.9].map(|x| (vec2(x, 0.7 - 0.5 * x),));
+    let (mut found, mut expected) = ([Vec2::ZERO; 4], [[0.0; 4]; 2]);
+    gpu.batch(&both, &places, &mut found)?;
+    gpu.batch(&of_wide, &places, &mut expected[0])?;
+    gpu.batch(&of_tall, &places, &mut expected[1])?;
+    assert_ne!(expected[0], expected[1]);
+    assert_eq!(found.map(|v| v.x), expected[0]);
+    assert_eq!(found.map(|v| v.y), expected[1]);
+    Ok(())
+}
+
 /// Texels are sent as they lie, once, and are gone with their texture; those of a slice are gone
 /// when the kernel has run.
 #[cfg(feature = "gpu")]
