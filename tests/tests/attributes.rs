@@ -125,5 +125,20 @@ fn tangents_are_those_of_surface_coordinates() -> Result<(), Box<dyn Error>> {
         mirrored += usize::from(found.tangent.w < 0.0);
     }
     assert!(mirrored > 50 && mirrored < 250, "{mirrored}");
+    // In a mirrored instance too.
+    let matrix3 = Mat3::from_diagonal(vec3(-1.0, 1.0, 1.0));
+    let trees = [Bvh::build_sharing(&triangles, &vertices, &BuildConfig::default())?];
+    let placement = Affine3 { matrix3, translation: Vec3::ZERO };
+    let placed = Instances::build(&trees, &[Instance::new(0, placement)])?;
+    let mesh = Mesh::new(&placed, MeshAttributes { uvs: &uvs, ..Default::default() })?;
+    let seen = kernel!(|ray: Ray| mesh.shading_point(ray, mesh.closest_hit(ray)));
+    assert_variants_agree!(&seen, &rays);
+    for (ray,) in &rays {
+        let found = seen.call((*ray,));
+        let (tangent, normal) = (direction(found.tangent), found.shading_normal.as_dvec3());
+        let bitangent = normal.cross(tangent) * f64::from(found.tangent.w);
+        let (of_u, of_v) = ((matrix3 * of_u).as_dvec3(), (matrix3 * of_v).as_dvec3());
+        assert!(tangent.dot(of_u) > 0.0 && bitangent.dot(of_v) > 0.0, "{found:?}");
+    }
     Ok(())
 }

@@ -6,7 +6,7 @@ use glam::DVec3;
 use raydsl::bsdf::Lambert;
 use raydsl::bvh::{Cost, Node};
 use raydsl::integrators::{
-    ambient_occlusion, aovs, bvh_cost, bvh_cost_color, direct_light, heat_color,
+    ambient_occlusion, aovs, bvh_cost, bvh_cost_color, clamped, direct_light, heat_color,
 };
 use raydsl::light::{AnyLight, DirectionalLight, Lights, PointLight};
 use raydsl::prelude::*;
@@ -35,6 +35,22 @@ impl Surface for Ball {
     fn albedo(&self, _ray: Ray, _hit: Hit) -> Vec3 {
         self.color
     }
+}
+
+/// What is not finite stays for the film to count, in every component.
+#[test]
+fn colors_that_are_not_finite_are_not_clamped() {
+    let (nan, infinite) = (f32::NAN, f32::INFINITY);
+    for [x, y, z] in [[5.0, nan, 0.0], [nan, 5.0, 0.0], [0.0, 5.0, nan], [5.0, 0.0, -infinite]] {
+        let color = vec4(x, y, z, 1.0);
+        let (kept, lost) = clamped(color, 2.0);
+        assert_eq!(kept.to_array().map(f32::to_bits), color.to_array().map(f32::to_bits));
+        assert_eq!(lost, Vec3::ZERO, "{color}");
+    }
+    assert_eq!(
+        clamped(vec4(4.0, 1.0, 0.0, 1.0), 2.0),
+        (vec4(2.0, 0.5, 0.0, 1.0), vec3(2.0, 0.5, 0.0))
+    );
 }
 
 fn balls(count: u32) -> Vec<Ball> {

@@ -13,6 +13,7 @@ use raydsl::light::{
 use raydsl::prelude::*;
 use raydsl::shading::Surface;
 use raydsl::testing::check::{EstimatorsTest, LightTest};
+use raydsl_tests::rng::Rng as Random;
 use raydsl_tests::scaled;
 
 /// A fifth of the usual samples, since numeric code is hardly optimised in tests: all of them with
@@ -130,6 +131,31 @@ fn spheres() {
     for (radius, center) in [(1.0, Vec3::ZERO), (1e-3, vec3(3.0, 0.0, 0.0))] {
         let ball = [Ball { center, radius }];
         assert_holds(shining(SphereShape { center, radius }, false), &ball[..]);
+    }
+}
+
+/// Spheres that are small from far away shine as brightly as others.
+#[test]
+fn far_spheres() {
+    let mut rng = Random::of("far spheres");
+    let center = vec3(2.4587054, 614.64587, 788.7994);
+    for radius in [1.0f32, 1e-3, 1e-4, 1e-5] {
+        let lamp = shining(SphereShape { center, radius }, false);
+        for _ in 0..2000 {
+            let sample = lamp.sample(Vec3::ZERO, vec2(rng.unit(), rng.unit()));
+            assert!(sample.pdf > 0.0, "{radius}: {sample:?}");
+            assert_eq!(sample.light, lamp.radiance, "{radius}: {sample:?}");
+        }
+    }
+}
+
+/// Samples beside black texels are directions too.
+#[test]
+fn environments_with_black_texels() {
+    let sky = Environment::new(&[Vec3::ZERO, Vec3::ONE], uvec2(2, 1)).expect("radiance");
+    for u in [vec2(0.0, 0.5), vec2(0.0, 0.0), vec2(0.5, 0.0)] {
+        let sample = sky.sample(u);
+        assert!((sample.wi.length() - 1.0).abs() < 1e-5 && sample.pdf >= 0.0, "{u}: {sample:?}");
     }
 }
 

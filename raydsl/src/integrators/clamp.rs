@@ -33,7 +33,9 @@ use crate::machine::generic::max;
 #[kernel]
 pub fn clamped(color: Vec4, limit: f32) -> (Vec4, Vec3) {
     let most = max(color.x, max(color.y, color.z));
-    let kept = if most > limit && most <= f32::MAX { limit / most } else { 1.0 };
+    let size = color.truncate().abs();
+    let is_finite = (size.x <= f32::MAX) & (size.y <= f32::MAX) & (size.z <= f32::MAX);
+    let kept = if most > limit && is_finite { limit / most } else { 1.0 };
     let before = color.truncate();
     let after = before * kept;
     let lost = before * (1.0 - kept);

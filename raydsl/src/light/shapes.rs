@@ -183,7 +183,9 @@ impl LightShape for SphereShape {
         let towards = wi * (if is_outside { -half } else { half }) - aside;
         let squared = towards.dot(towards);
         let outwards = towards / max(squared, f32::MIN_POSITIVE).sqrt();
-        let normal = if squared > 0.0 { outwards } else { -wi };
+        // Of a sphere that is small from here, what is left of the chord is rounding.
+        let is_away = is_outside && outwards.dot(wi) >= 0.0;
+        let normal = if squared > 0.0 && !is_away { outwards } else { -wi };
         let point = sphere::of_normal(normal, self.center, self.radius);
         let pdf = if is_outside { cone_pdf(height) } else { UNIFORM_SPHERE_PDF };
         ShapeSample { wi, point, pdf: if self.radius > 0.0 { pdf } else { 0.0 } }

@@ -13,7 +13,7 @@ use crate::bvh::carrier::carrier;
 use crate::bvh::{PrimitiveScene, RayQueryOn, RecordQuery, SceneView};
 use crate::geometry::{Hit, HitOn, IndexedTriangle, RayOn, SurfacePointOn, transform_normal_back};
 use crate::machine::functions::{vec3, vec4};
-use crate::machine::generic::inverse;
+use crate::machine::generic::{inverse, max};
 use crate::machine::{
     Capture, Data, Leaves, Machine, On, Parameter, Resource, Schema, Slice, U, Value, X2,
 };
@@ -131,11 +131,22 @@ pub struct MeshView<'a> {
     materials: Slice<'a, u32>,
 }
 
-/// Transforms a tangent of an instance to the space of the scene.
+/// Divides by the largest component.
+#[kernel]
+fn in_largest(v: Vec3) -> Vec3 {
+    v / max(v.abs().max_element(), f32::MIN_POSITIVE)
+}
+
+/// Transforms a tangent of an instance to the space of the scene. In a mirrored instance the bitangent is
+/// on the other side of normal and tangent.
 #[kernel]
 fn placed_tangent(to_object: Affine3, tangent: Vec4) -> Vec4 {
-    let along = inverse(to_object.matrix3) * vec3(tangent.x, tangent.y, tangent.z);
-    vec4(along.x, along.y, along.z, tangent.w)
+    let matrix = to_object.matrix3;
+    let along = inverse(matrix) * vec3(tangent.x, tangent.y, tangent.z);
+    // Scaled, so that the products neither over- nor underflow.
+    let (x, y) = (in_largest(matrix.x_axis), in_largest(matrix.y_axis));
+    let is_mirrored = in_largest(matrix.z_axis).dot(x.cross(y)) < 0.0;
+    vec4(along.x, along.y, along.z, if is_mirrored { -tangent.w } else { tangent.w })
 }
 
 /// Returns a tangent perpendicular to the normal, of unit length.

@@ -157,6 +157,19 @@ fn quads() {
     assert_distributed("quad", &counts, &shares([1, 1], |_, _| pdf * 6.0));
 }
 
+/// The dark end of a density that rises from 0.
+#[test]
+fn bilinear_from_the_dark() {
+    for (u, weights) in [
+        (vec2(0.0, 0.5), vec4(0.0, 1.0, 0.0, 1.0)),
+        (vec2(0.5, 0.0), vec4(0.0, 0.0, 1.0, 1.0)),
+        (Vec2::ZERO, Vec4::W),
+    ] {
+        let p = sample_bilinear(u, weights);
+        assert!(p.min_element() >= 0.0 && p.max_element() < 1.0, "{u} {weights}: {p}");
+    }
+}
+
 #[test]
 fn bilinear() {
     for weights in [vec4(1.0, 1.0, 1.0, 1.0), vec4(0.0, 1.0, 3.0, 0.5), Vec4::ZERO, Vec4::Z] {

@@ -19,7 +19,8 @@ fn sample_linear(u: f32, a: f32, b: f32) -> f32 {
     let a = if most > 0.0 { a / most } else { 1.0 };
     let b = if most > 0.0 { b / most } else { 1.0 };
     let root = (a * a + u * (b * b - a * a)).sqrt();
-    min(u * (a + b) / (a + root), ONE_MINUS_EPSILON)
+    // At the dark end of a density that rises from 0 both are 0.
+    min(u * (a + b) / max(a + root, f32::MIN_POSITIVE), ONE_MINUS_EPSILON)
 }
 
 /// Returns the number whose [`sample_linear`] is `x`.
