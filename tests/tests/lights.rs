@@ -138,7 +138,7 @@ fn spheres() {
 #[test]
 fn far_spheres() {
     let mut rng = Random::of("far spheres");
-    let center = vec3(2.4587054, 614.64587, 788.7994);
+    let center = vec3(2.458_705, 614.6459, 788.7994);
     for radius in [1.0f32, 1e-3, 1e-4, 1e-5] {
         let lamp = shining(SphereShape { center, radius }, false);
         for _ in 0..2000 {

@@ -51,6 +51,7 @@ fn corner(at: [f32; 3]) -> f32 {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Type)]
+#[allow(clippy::upper_case_acronyms, reason = "names as users have them")]
 enum Lobe {
     GGX { alpha: f32 },
     HG(f32),

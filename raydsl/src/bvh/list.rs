@@ -75,8 +75,7 @@ impl<'a, P: Primitive> BvhList<'a, P> {
     ///
     /// # Errors
     ///
-    /// If there are more primitives than 32-bit ids, or trees whose primitives share different
-    /// slices.
+    /// If there are more than 2^30 primitives, or trees whose primitives share different slices.
     pub fn new(trees: &'a [Bvh<'a, P>]) -> Result<Self, ListError> {
         let count: usize = trees.iter().map(|tree| tree.primitives().len()).sum();
         if count > MAX_PRIMITIVES {

@@ -139,8 +139,8 @@ impl<'a, P: Primitive<Shared = ()>> Bvh<'a, P> {
     ///
     /// # Errors
     ///
-    /// If the bounds of a primitive are not finite, or there are more primitives than 32-bit
-    /// indices.
+    /// If the bounds of a primitive are not finite, or there are more than
+    /// 2^30 primitives.
     pub fn build(prims: &'a [P]) -> Result<Self, BuildError> {
         Self::build_with(prims, &BuildConfig::default())
     }
