@@ -9,8 +9,8 @@ use crate::here::private;
 
 /// Returns the name of the method of twins of enums that returns the value itself.
 ///
-/// Patterns call the methods of variants on what it returns, and it has one span in the whole program:
-/// of an enum that is no type of kernels, rustc says once that there is no such method, instead of
+/// Patterns call the methods of variants on what it returns, and it has the span of the macro's call: of an
+/// enum that is no type of kernels, rustc says once in a kernel that there is no such method, instead of
 /// each time that a pattern tests a variant or binds a field.
 pub(crate) fn kinds() -> Ident {
     Ident::new("__kinds_by_derive_Type", Span::call_site())

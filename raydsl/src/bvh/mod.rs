@@ -139,8 +139,7 @@ impl<'a, P: Primitive<Shared = ()>> Bvh<'a, P> {
     ///
     /// # Errors
     ///
-    /// If the bounds of a primitive are not finite, or there are more than
-    /// 2^30 primitives.
+    /// If the bounds of a primitive are not finite, or there are more than 2^30 primitives.
     pub fn build(prims: &'a [P]) -> Result<Self, BuildError> {
         Self::build_with(prims, &BuildConfig::default())
     }
