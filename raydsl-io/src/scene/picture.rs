@@ -53,6 +53,8 @@ impl Room {
             let mut reader = ImageReader::with_format(Cursor::new(bytes), format);
             let mut limits = Limits::default();
             (limits.max_image_width, limits.max_image_height) = (Some(LONGEST), Some(LONGEST));
+            // Of 16 bits a channel, which is the most that a file has.
+            limits.max_alloc = Some(8 * MOST);
             reader.limits(limits);
             reader
         };

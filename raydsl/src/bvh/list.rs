@@ -60,10 +60,10 @@ pub enum ListError {
     /// The primitives of two trees share different slices.
     #[error(
         "tree {tree} shares another slice than tree {first}: put what the primitives of all trees \
-         share into one"
+         share into one, and build each tree with it, also one whose primitives do not read it"
     )]
     SharesAnother {
-        /// The first tree that shares anything.
+        /// The first tree with primitives.
         first: usize,
         /// The other tree.
         tree: usize,

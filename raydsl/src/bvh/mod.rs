@@ -226,7 +226,8 @@ impl<'a, P: Primitive> Bvh<'a, P> {
         Self::build_told(prims, shared.into_shared(), config, None, wide::queries())
     }
 
-    /// Builds a wide tree as [`Bvh::build_wide`], with an observer as [`Bvh::build_observed`].
+    /// Builds a wide tree as [`Bvh::build_wide`], with an observer as [`Bvh::build_observed`]. It is
+    /// told 1 before the primitives are copied to the leaves, which is then not interrupted.
     ///
     /// # Errors
     ///

@@ -340,7 +340,7 @@ fn traverse_all<'a, L: Lanes, P: Primitive, W: Places<'a, L, P>>(
     mut visit: impl FnMut(&Candidate<'_, '_, L, P>, L::Mask, &mut L::F32) -> L::Mask,
 ) {
     let l = m.lanes();
-    let shared = prims.shared();
+    let shared = prims.stored().views();
     let mut limit = ray.t_max.0;
     let mut active = and(l, m.active(), is_finite::on(m, *ray).0);
     let mut places = places(l, ray, active);

@@ -316,7 +316,7 @@ impl<'a, T, S: Shared> View<'a, T, S> {
     /// kinds share [several](crate::geometry::Several).
     #[inline(always)]
     pub fn shared(&self) -> S::Views<'a> {
-        S::views(self.stored(), &Names::new(self.name, &|place| self.shared_key(place)))
+        S::views(self.stored(), self.shared_names())
     }
 
     /// Returns the shared data as the scene has them.
@@ -331,11 +331,11 @@ impl<'a, T, S: Shared> View<'a, T, S> {
         }
     }
 
-    /// Returns the key of the slice of shared data at `place`.
+    /// Returns the names of the slices of shared data, and the keys of their buffers.
     #[inline(always)]
-    fn shared_key(&self, place: u32) -> Option<BufferKey> {
-        let part = buffers::SHARED[place as usize];
-        (!self.is_slice()).then(|| self.key_of(part))
+    fn shared_names(&self) -> Names {
+        let key = (!self.is_slice()).then(|| self.key_of(buffers::SHARED[0]));
+        Names::new(self.name, key, buffers::SHARED)
     }
 
     /// Returns the elements of a slice, or of the slice under a tree.
@@ -542,8 +542,7 @@ impl<T: Type, S: Shared> Resource for View<'_, T, S> {
                 let is_list = self.is_list();
                 out.fact(1 + u64::from(is_list));
                 out.data(self);
-                self.stored()
-                    .describe(&Names::new(self.name, &|place| self.shared_key(place)), out);
+                self.stored().describe(self.shared_names(), out);
                 let name = Data::name(self);
                 let (nodes, indices) = self.tree_len();
                 let (of_nodes, of_indices) = (buffers::NODES, buffers::INDICES);

@@ -38,9 +38,14 @@ impl Aabb {
     /// Empty box.
     pub const EMPTY: Self = Self { min: Vec3::INFINITY, max: Vec3::NEG_INFINITY };
 
-    /// Returns the smallest box around `points`.
+    /// Returns the smallest box around `points`. A NaN in one makes both bounds of its axis NaN.
     pub fn from_points(points: impl IntoIterator<Item = Vec3>) -> Self {
-        points.into_iter().fold(Self::EMPTY, |b, p| Self::new(b.min.min(p), b.max.max(p)))
+        // `min` and `max` of glam would forget a NaN, and what came before it.
+        let nearer = |a: Vec3, b: Vec3, is_nearer| Vec3::select(is_nearer | a.is_nan_mask(), a, b);
+        points.into_iter().fold(Self::EMPTY, |b, p| {
+            let (min, max) = (nearer(b.min, p, b.min.cmplt(p)), nearer(b.max, p, b.max.cmpgt(p)));
+            Self::new(min, max)
+        })
     }
 
     /// Returns the smallest `f32` box that contains the sphere around `center`: the faces are

@@ -36,7 +36,7 @@ pub trait Shared: Copy + Send + Sync + 'static {
     fn load(stored: SharedStore<'_, Self>) -> Self::Slices<'_>;
 
     #[doc(hidden)]
-    fn views<'a>(stored: SharedStore<'a, Self>, names: &Names) -> Self::Views<'a>;
+    fn views<'a>(stored: SharedStore<'a, Self>, names: Names) -> Self::Views<'a>;
 
     /// Returns the slices of the host that kernels see.
     #[doc(hidden)]
@@ -79,29 +79,30 @@ impl<'a, T: Type, C: AsRef<[T]> + ?Sized> IntoShared<'a, T> for &'a C {
 /// The names of the slices, of which a kernel's text has some.
 const SUFFIXES: [&str; 3] = ["shared", "shared_2", "shared_3"];
 
-/// The name of the scene whose primitives share the slices, and the keys of its buffers.
+/// The name of the scene whose primitives share the slices, and the keys of their buffers: one
+/// whose part differs.
 #[doc(hidden)]
-pub struct Names<'n> {
+#[derive(Clone, Copy, Debug)]
+pub struct Names {
     name: &'static str,
-    key: &'n dyn Fn(u32) -> Option<BufferKey>,
+    key: Option<BufferKey>,
+    parts: [u32; 3],
 }
 
-impl fmt::Debug for Names<'_> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Names").field("name", &self.name).finish_non_exhaustive()
-    }
-}
+impl Names {
+    /// Of slices that no buffer is made of.
+    const NONE: Self = Self { name: "", key: None, parts: [0; 3] };
 
-impl<'n> Names<'n> {
-    /// Names slices after a scene; `key` returns the key of a slice, by its place.
+    /// Names slices after a scene.
     #[inline(always)]
-    pub(crate) fn new(name: &'static str, key: &'n dyn Fn(u32) -> Option<BufferKey>) -> Self {
-        Self { name, key }
+    pub(crate) fn new(name: &'static str, key: Option<BufferKey>, parts: [u32; 3]) -> Self {
+        Self { name, key, parts }
     }
 
     #[inline(always)]
-    fn slice<'a, T>(&self, place: u32, elements: &'a [T]) -> Slice<'a, T> {
-        Slice::owned(elements, (self.key)(place), self.name).suffixed(SUFFIXES[place as usize])
+    fn slice<T>(self, place: usize, elements: &[T]) -> Slice<'_, T> {
+        let key = self.key.map(|key| BufferKey { part: self.parts[place], ..key });
+        Slice::owned(elements, key, self.name).suffixed(SUFFIXES[place])
     }
 }
 
@@ -141,6 +142,12 @@ impl<'a, S: Shared> SharedStore<'a, S> {
         S::load(self)
     }
 
+    /// Returns the slices for a machine of the CPU, which needs no names.
+    #[inline(always)]
+    pub(crate) fn views(self) -> S::Views<'a> {
+        S::views(self, Names::NONE)
+    }
+
     /// Returns whether both are the same slices, or empty ones.
     pub(crate) fn is_same(self, other: Self) -> bool {
         fn same<T>(a: &[T], b: &[T]) -> bool {
@@ -162,7 +169,7 @@ impl<'a, S: Shared> SharedStore<'a, S> {
     }
 
     /// Describes the slices to a recording.
-    pub(crate) fn describe(self, names: &Names<'_>, out: &mut Description) {
+    pub(crate) fn describe(self, names: Names, out: &mut Description) {
         let Self { first, second, third } = self;
         out.data(&names.slice(0, first));
         if S::COUNT > 1 {
@@ -194,7 +201,7 @@ impl<T: Type> Shared for T {
     }
 
     #[inline(always)]
-    fn views<'a>(stored: SharedStore<'a, T>, names: &Names<'_>) -> Slice<'a, T> {
+    fn views<'a>(stored: SharedStore<'a, T>, names: Names) -> Slice<'a, T> {
         names.slice(0, stored.first)
     }
 
@@ -228,7 +235,7 @@ macro_rules! several {
             }
 
             #[inline(always)]
-            fn views<'a>(stored: SharedStore<'a, Self>, names: &Names<'_>) -> Self::Views<'a> {
+            fn views<'a>(stored: SharedStore<'a, Self>, names: Names) -> Self::Views<'a> {
                 ($(names.slice($at, stored.$place),)+)
             }
 
@@ -391,5 +398,5 @@ where
 #[doc(hidden)]
 #[inline(always)]
 pub fn shared_views<S: Shared>(all: S::Slices<'_>) -> S::Views<'_> {
-    S::views(S::store(all), &Names::new("", &|_| None))
+    S::store(all).views()
 }

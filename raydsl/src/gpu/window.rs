@@ -42,7 +42,8 @@ impl<D: OnHost + ?Sized> OnHost for &D {
     }
 }
 
-impl<T: Type> OnHost for [T] {
+// Only references: the address identifies the elements while they are borrowed.
+impl<T: Type> OnHost for &[T] {
     type Element = T;
 
     fn buffer(&self) -> (BufferKey, usize) {
@@ -50,7 +51,7 @@ impl<T: Type> OnHost for [T] {
     }
 }
 
-impl<T: Type> OnHost for Vec<T> {
+impl<T: Type> OnHost for &Vec<T> {
     type Element = T;
 
     fn buffer(&self) -> (BufferKey, usize) {
@@ -58,7 +59,7 @@ impl<T: Type> OnHost for Vec<T> {
     }
 }
 
-impl<T: Type, const N: usize> OnHost for [T; N] {
+impl<T: Type, const N: usize> OnHost for &[T; N] {
     type Element = T;
 
     fn buffer(&self) -> (BufferKey, usize) {

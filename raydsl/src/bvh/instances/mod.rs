@@ -247,30 +247,41 @@ impl<'a, P: Primitive> Instances<'a, P> {
         Ok(Group { scene: self.id(), index: self.groups.len() as u32 - 1 })
     }
 
-    /// Replaces the instances of a group: they may move, appear and disappear. Later groups are
-    /// rebuilt, since they may contain this one. The trees stay as they are; a device keeps their
-    /// primitives, and is sent nodes, indices and places.
+    /// Replaces the instances of a group: they may move, appear and disappear. The trees over the
+    /// groups that contain it are rebuilt too. Those of primitives stay as they are; a device keeps
+    /// the primitives, and is sent nodes, indices and places.
     ///
     /// # Errors
     ///
-    /// As [`Instances::group`]; also for a group of another scene. The scene is then unchanged.
+    /// As [`Instances::group`]; also for a group of another scene. The scene is then unchanged. If a
+    /// group that contains this one cannot be built, the error names one of *its* instances.
     pub fn set_group(&mut self, group: Group, instances: &[Instance]) -> Result<(), InstanceError> {
         let at = group.index as usize;
         if group.scene != self.id() {
             return Err(InstanceError::ForeignGroup);
         }
-        let later = self.placed.groups.split_off(at);
-        let changed = core::mem::replace(&mut self.groups[at], instances.to_vec());
+        let instances_before = core::mem::replace(&mut self.groups[at], instances.to_vec());
+        let mut before: Vec<(usize, Placing)> = Vec::new();
+        let mut is_changed = vec![false; self.groups.len()];
         for k in at..self.groups.len() {
+            let contains_changed = |instance: &Instance| match instance.object {
+                Object::Group(group) => is_changed.get(group.index as usize) == Some(&true),
+                Object::Tree(_) => false,
+            };
+            if k != at && !self.groups[k].iter().any(contains_changed) {
+                continue;
+            }
             match self.make(&self.groups[k], k) {
-                Ok(made) => self.placed.groups.push(made),
+                Ok(made) => before.push((k, core::mem::replace(&mut self.placed.groups[k], made))),
                 Err(error) => {
-                    self.placed.groups.truncate(at);
-                    self.placed.groups.extend(later);
-                    self.groups[at] = changed;
+                    for (k, group) in before {
+                        self.placed.groups[k] = group;
+                    }
+                    self.groups[at] = instances_before;
                     return Err(error);
                 }
             }
+            is_changed[k] = true;
         }
         self.placed.version += 1;
         Ok(())

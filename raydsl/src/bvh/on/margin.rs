@@ -69,7 +69,7 @@ pub(super) fn query<P: Primitive, R>(
     };
     let intersect = |name: Name| {
         let ray = local_ray(m, prims, name.inst, ray);
-        let record = P::intersect_one_on(m, &prims.get(name.prim), ray, prims.shared());
+        let record = P::intersect_one_on(m, &prims.get(name.prim), ray, prims.stored().views());
         found(record);
         P::Hit::hit_on(record)
     };

@@ -340,7 +340,7 @@ pub(super) fn leaf_intersector<'a, P: Primitive>(
     part: Part<'a, P, P::Shared>,
     tree: &'a super::Wide,
 ) -> LeafIntersector<'a, P> {
-    let (shared, kinds) = (scene.shared(), scene.kinds());
+    let (shared, kinds) = (scene.stored().views(), scene.kinds());
     LeafIntersector { tree, part, shared, kinds }
 }
 

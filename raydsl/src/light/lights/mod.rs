@@ -150,7 +150,7 @@ impl<'a, L: Light + MachineType> Lights<'a, L> {
     /// Builds a tree by which kernels choose lights that send much light to the point in question: those
     /// that are close, and that shine towards it. In a hall with 10,000 small triangles the variance of
     /// a sample is 7 to 96 times lower than by power, where each shines unhindered
-    /// (`tests/tests/light_tree.rs`). A choice is a way down the tree, some ten times the work of one by
+    /// (`tests/tests/light/light_tree.rs`). A choice is a way down the tree, some ten times the work of one by
     /// power: a handful of lights is better off without.
     ///
     /// The cosine at the point counts on both sides of the surface, which may let light through.

@@ -29,6 +29,18 @@ fn invalid_boxes_are_named() {
     assert_eq!(error_with(&all), BuildError::InfiniteBounds { index: 17_000 });
 }
 
+/// Whichever of the points it is.
+#[test]
+fn a_box_keeps_a_nan_of_its_points() {
+    for i in 0..3 {
+        let mut points = [Vec3::ZERO, Vec3::ONE, Vec3::NEG_ONE];
+        points[i].y = f32::NAN;
+        let bounds = Aabb::from_points(points);
+        assert!(bounds.min.y.is_nan() && bounds.max.y.is_nan(), "{bounds:?}");
+        assert_eq!(error_with(&[(7, bounds)]), BuildError::NanBounds { index: 7 });
+    }
+}
+
 #[test]
 fn too_many_primitives() {
     let none = |_| -> Aabb { unreachable!("refused before any box is read") };
