@@ -30,38 +30,21 @@ pub(crate) const ROOMS: [Room; 5] = [
 ];
 
 /// The programs of `tests/tests` that concern the rooms, beside the library's unit tests.
-pub(crate) const PROGRAMS: [&str; 31] = [
-    "accelerators",
+pub(crate) const PROGRAMS: [&str; 14] = [
     "adversary",
     "analytic",
-    "any_scene",
-    "attributes",
-    "boxes",
     "cells",
-    "closures",
-    "contract",
-    "edges",
-    "facts",
     "flow",
-    "gangs",
-    "hits",
-    "instances",
-    "integers",
-    "leaves",
-    "levels",
+    "geometry",
+    "language",
     "moving",
-    "origins",
-    "own_shapes",
-    "primitives",
     "queries",
-    "rays",
-    "recordings",
+    "render",
+    "reports",
     "sampling",
     "scenes",
-    "shapes",
     "variants",
     "volumes",
-    "walls",
 ];
 
 /// Tests that look at recorded text too, by a part of their names: a change of text alone is no fault.

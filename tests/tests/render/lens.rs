@@ -8,10 +8,10 @@ use raydsl::{assert_variants_agree, kernel};
 use raydsl_tests::rng::Rng;
 
 #[expect(unreachable_pub, reason = "a module of the examples' library")]
-#[path = "../../examples/src/lens.rs"]
-mod lens;
+#[path = "../../../examples/src/lens.rs"]
+mod example;
 
-use lens::{
+use example::{
     BogackiShampine, FishEye, Luneburg, Medium, Passage, RungeKutta, State, Stepper, Verlet,
     excess, through,
 };

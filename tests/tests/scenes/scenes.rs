@@ -253,9 +253,11 @@ fn indexed_triangles_are_triangles() {
 #[test]
 fn an_index_without_a_vertex_is_an_error() {
     let vertices = [Vec3::X, Vec3::Y, Vec3::Z];
-    let indexed = [[0, 1, 2], [0, 1, 3]].map(|vertices| IndexedTriangle { vertices });
-    let built = Bvh::build_sharing(&indexed, &vertices, &BuildConfig::default());
-    assert_eq!(built.err(), Some(BuildError::NanBounds { index: 1 }));
+    for wrong in [[3, 0, 1], [0, 3, 1], [0, 1, 3]] {
+        let indexed = [[0, 1, 2], wrong].map(|vertices| IndexedTriangle { vertices });
+        let built = Bvh::build_sharing(&indexed, &vertices, &BuildConfig::default());
+        assert_eq!(built.err(), Some(BuildError::NanBounds { index: 1 }), "{wrong:?}");
+    }
 }
 
 #[test]

@@ -10,9 +10,9 @@ use raydsl_tests::rng::Rng;
 use raydsl_tests::scaled;
 use torus::Torus;
 
-#[path = "../../examples/hair/shape.rs"]
+#[path = "../../../examples/hair/shape.rs"]
 mod hair;
-#[path = "../../examples/torus/shape.rs"]
+#[path = "../../../examples/torus/shape.rs"]
 mod torus;
 
 type D3 = [f64; 3];

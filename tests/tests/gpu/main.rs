@@ -1,5 +1,8 @@
 //! What belongs to the device: windows, the application's own device, caches.
 
+mod buffers;
+mod layout;
+
 use raydsl::gpu::{Context, GpuScheduler};
 use raydsl::kernel;
 use raydsl::prelude::*;

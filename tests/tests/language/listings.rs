@@ -4,15 +4,15 @@ use raydsl::assert_variants_agree;
 use raydsl::prelude::*;
 use raydsl_tests::rng::Rng;
 
-#[path = "../../examples/listings/cloud.rs"]
+#[path = "../../../examples/listings/cloud.rs"]
 mod cloud;
-#[path = "../../examples/listings/kinds.rs"]
+#[path = "../../../examples/listings/kinds.rs"]
 mod kinds;
-#[path = "../../examples/listings/menu.rs"]
+#[path = "../../../examples/listings/menu.rs"]
 mod menu;
-#[path = "../../examples/listings/texture.rs"]
+#[path = "../../../examples/listings/texture.rs"]
 mod texture;
-#[path = "../../examples/listings/width.rs"]
+#[path = "../../../examples/listings/width.rs"]
 mod width;
 
 fn rays(rng: &mut Rng, eye: Vec3, aim: f32) -> Vec<(Ray,)> {
