@@ -116,6 +116,17 @@ pub struct Goal {
     pub seconds: f32,
 }
 
+impl Goal {
+    /// Returns the goal, if its numbers are above 0 and finite.
+    pub(crate) fn checked(self) -> Result<Self, String> {
+        let is_right = |number: f32| number > 0.0 && number.is_finite();
+        if is_right(self.error) && is_right(self.seconds) {
+            return Ok(self);
+        }
+        Err("errors and seconds are above 0 and finite".to_owned())
+    }
+}
+
 impl Action {
     /// Returns the action that does the same as this one and then another, if there is one.
     pub(crate) fn joined(&self, next: &Self) -> Option<Self> {

@@ -1,6 +1,7 @@
 //! Changes of a look that need no data.
 
 use raydsl::prelude::*;
+use raydsl_scenes::Pose;
 
 use crate::action::Action;
 use crate::look::{CutObject, Knot, Look, MOST_KNOTS, preset};
@@ -11,6 +12,8 @@ const MOST_SIDE: u32 = 16384;
 const MOST_PIXELS: u64 = 1 << 26;
 /// The most objects that are cut out.
 const MOST_CUTS: usize = 64;
+/// The least and the greatest vertical field of view, in radians.
+pub(crate) const FIELDS_OF_VIEW: (f32, f32) = (0.1f32.to_radians(), 170f32.to_radians());
 
 /// Returns the size of a picture, if it is one that fits into memory.
 pub(crate) fn size(width: u32, height: u32) -> Result<(u32, u32), String> {
@@ -19,6 +22,30 @@ pub(crate) fn size(width: u32, height: u32) -> Result<(u32, u32), String> {
         return Ok((width, height));
     }
     Err(format!("sides are from 1 to {MOST_SIDE}, and pixels at most {MOST_PIXELS}"))
+}
+
+/// Returns a camera, if it has a direction and sees something; what is up is made a unit vector.
+pub(crate) fn camera(pose: Pose) -> Result<Pose, String> {
+    let (least, most) = FIELDS_OF_VIEW;
+    if !(least..=most).contains(&pose.fov_y) {
+        return Err("the field of view is from 0.1 to 170 degrees".to_owned());
+    }
+    // A unit vector keeps its bits: an animation ends at the camera that it began with.
+    let up = if pose.up.is_normalized() { pose.up } else { pose.up.normalize_or_zero() };
+    let pose = Pose { up, ..pose };
+    // Squares of larger distances are infinite.
+    if pose.is_valid() && pose.distance().is_finite() {
+        return Ok(pose);
+    }
+    Err("the camera has no direction".to_owned())
+}
+
+/// Returns an exposure in stops, if it is finite: the nearest from -20 to 20.
+pub(crate) fn exposure(stops: f32) -> Result<f32, String> {
+    if stops.is_finite() {
+        return Ok(stops.clamp(-20.0, 20.0));
+    }
+    Err("an exposure is finite".to_owned())
 }
 
 /// Changes a look.
@@ -129,4 +156,34 @@ pub(crate) fn drag_cut(look: &mut Look, i: usize, to: Vec2, bounds: Aabb) -> Res
     let by = (moved - place) / bounds.size().max(Vec3::splat(f32::MIN_POSITIVE));
     *cut = checked_cut(cut.moved(by))?;
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn cameras_that_see_nothing_are_refused() {
+        let pose = Pose::default();
+        assert_eq!(camera(pose), Ok(pose));
+        let long = Pose { up: vec3(0.0, 0.0, 5.0), ..pose };
+        assert_eq!(camera(long), Ok(pose), "what is up is a direction");
+        for fov_y in [f32::NAN, f32::INFINITY, 0.0, -0.7, 3.0] {
+            let error = camera(Pose { fov_y, ..pose }).expect_err("it has no such field of view");
+            assert_eq!(error, "the field of view is from 0.1 to 170 degrees", "{fov_y}");
+        }
+        for wrong in [
+            Pose { eye: vec3(f32::NAN, 0.0, 0.0), ..pose },
+            Pose { target: vec3(0.0, f32::INFINITY, 0.0), ..pose },
+            Pose { target: pose.eye, ..pose },
+            Pose { eye: vec3(0.0, -2e38, 0.0), target: vec3(0.0, 2e38, 0.0), ..pose },
+            Pose { up: Vec3::ZERO, ..pose },
+            Pose { up: vec3(0.0, 0.0, f32::INFINITY), ..pose },
+            Pose { up: Vec3::NAN, ..pose },
+            Pose { up: pose.target - pose.eye, ..pose },
+        ] {
+            let error = camera(wrong).expect_err("it has no direction");
+            assert_eq!(error, "the camera has no direction", "{wrong:?}");
+        }
+    }
 }

@@ -27,20 +27,29 @@ type Point = (f32, Vec3, f32);
 ///
 /// # Errors
 ///
-/// If the preset has more pieces than can be followed, or needs more knots than a function has.
+/// If the preset has values of the data and these have no range, if it has more pieces than can be
+/// followed, or if it needs more knots than a function has.
 pub(crate) fn knots(preset: &Preset, range: Vec2) -> Result<Vec<Knot>, String> {
     let (first, last) = match (preset.colors.first(), preset.colors.last()) {
         (Some(first), Some(last)) => (first.0, last.0),
         _ => return Err(format!("{}: has no colours", preset.name)),
     };
     let is_of_shares = (first, last) == (0.0, 1.0);
-    let place = |value: f32| {
-        if is_of_shares { value } else { (value - range.x) / (range.y - range.x) }
-    };
+    let width = range.y - range.x;
+    let place = |value: f32| if is_of_shares { value } else { (value - range.x) / width };
     let ramp = RAMP.map(|(at, opacity)| (first + (last - first) * at, opacity));
     let opacities = if preset.opacities.is_empty() { &ramp[..] } else { &preset.opacities };
     let colors: Vec<(f32, Vec3)> = preset.colors.iter().map(|(v, c)| (place(*v), *c)).collect();
     let opacities: Vec<(f32, f32)> = opacities.iter().map(|(v, o)| (place(*v), *o)).collect();
+    // Data of one value, or of an infinite range, have no shares.
+    let places = || colors.iter().map(|c| c.0).chain(opacities.iter().map(|o| o.0));
+    if !(is_of_shares || (width.is_finite() && places().all(f32::is_finite))) {
+        return Err(format!(
+            "{}: its values from {first} to {last} have no place among data from {} to {}: export it \
+             with values from 0 to 1",
+            preset.name, range.x, range.y
+        ));
+    }
     let points = points(&colors, &opacities)
         .ok_or_else(|| format!("{}: has more than {MOST_PIECES} points", preset.name))?;
     let knots = fewest(&points);
@@ -189,6 +198,22 @@ mod tests {
         assert_eq!(shown(&knots, 0.05).1, 0.0);
         assert!((shown(&knots, 1.0).1 - 0.9).abs() < 1e-6);
         assert!((shown(&knots, 0.5).0 - 0.5).abs().max_element() < 1.5 * NEAR);
+    }
+
+    #[test]
+    fn data_without_a_range_have_no_place_for_values() {
+        let colors = [(-10.0, Vec3::ZERO), (7.0, Vec3::ONE)];
+        let own = preset(&colors, &[]);
+        let infinite = [vec2(0.0, f32::INFINITY), vec2(-3e38, 3e38)];
+        for range in [vec2(7.0, 7.0), vec2(0.0, 1e-40)].into_iter().chain(infinite) {
+            let error = knots(&own, range).expect_err("there is no range");
+            assert!(
+                error.starts_with("a: its values from -10 to 7 have no place among"),
+                "{error}"
+            );
+        }
+        let shares = preset(&[(0.0, Vec3::ZERO), (1.0, Vec3::ONE)], &[]);
+        assert!(knots(&shares, vec2(7.0, 7.0)).is_ok(), "shares need none");
     }
 
     #[test]

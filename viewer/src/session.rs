@@ -196,9 +196,9 @@ impl Session {
             Action::Mode(mode) => look.mode = self.checked_mode(*mode)?,
             Action::Variant(variant) => look.variant = *variant,
             Action::Show(show) => look.show = self.checked_show(*show)?,
-            Action::Exposure(stops) => look.exposure = stops.clamp(-20.0, 20.0),
+            Action::Exposure(stops) => look.exposure = crate::edit::exposure(*stops)?,
             Action::Home => look.pose = self.info.as_ref().ok_or("nothing is open")?.home,
-            Action::Camera(pose) => look.pose = *pose,
+            Action::Camera(pose) => look.pose = crate::edit::camera(*pose)?,
             Action::View(name) => {
                 look.pose = *self.views.get(name).ok_or("there is no view of this name")?;
             }

@@ -276,6 +276,7 @@ fn animations_are_their_pictures() {
     }
     assert!(others("way-0000.png", "way-0002.png") > 0.1);
     assert_eq!(frames_of(&folder.path("own.png"), 10).len(), 1);
+    assert_eq!(picture_of(&folder.path("y.png")).0, (41, 24), "it is no picture of the film");
     let refused = play("animate views 5 1 a\nopen head:16\nanimate views 5 1 a", &folder);
     assert_eq!(refused.errors(), 2, "{:#?}", refused.log());
 }

@@ -95,13 +95,8 @@ impl<'a> Words<'a> {
 
     fn camera(&mut self) -> Result<Pose, String> {
         let (eye, target, up) = (self.three()?, self.three()?, self.three()?);
-        let fov = self.float()?;
-        if !(0.1..=170.0).contains(&fov) {
-            return Err("the field of view is from 0.1 to 170 degrees".to_owned());
-        }
-        let up = up.normalize_or_zero();
-        let pose = Pose { eye, target, up, fov_y: fov.to_radians() };
-        if pose.is_valid() { Ok(pose) } else { Err("the camera has no direction".to_owned()) }
+        let (up, fov_y) = (up.normalize_or_zero(), self.float()?.to_radians());
+        crate::edit::camera(Pose { eye, target, up, fov_y })
     }
 
     fn until(&mut self) -> Result<Action, String> {
@@ -110,10 +105,7 @@ impl<'a> Words<'a> {
             return Ok(Action::Until(None));
         }
         let goal = Goal { error: self.float()?, seconds: self.float()? };
-        if goal.error > 0.0 && goal.seconds > 0.0 {
-            return Ok(Action::Until(Some(goal)));
-        }
-        Err("errors and seconds are above 0".to_owned())
+        Ok(Action::Until(Some(goal.checked()?)))
     }
 
     fn animation(&mut self) -> Result<Animation, String> {

@@ -80,7 +80,10 @@ fn home(file: &File, bounds: Aabb, up: Vec3) -> Pose {
         if let Projection::Perspective { vertical, .. } = c.projection {
             let away = c.position.distance(bounds.center()).max(1e-3 * bounds.size().length());
             let target = c.position + c.forward * away;
-            let pose = Pose { eye: c.position, target, up, fov_y: vertical };
+            // An animation goes back to the camera of before, which has to be one that is not refused.
+            let (least, most) = crate::edit::FIELDS_OF_VIEW;
+            let fov_y = vertical.clamp(least, most);
+            let pose = Pose { eye: c.position, target, up, fov_y };
             let tries = [pose, Pose { up: c.up, ..pose }, all];
             return tries.into_iter().find(Pose::is_valid).unwrap_or(all);
         }
@@ -250,9 +253,8 @@ mod tests {
     use super::*;
 
     /// The pose of a file with one camera, five units from the middle.
-    fn pose_of(forward: Vec3, up: Vec3) -> Pose {
-        let projection =
-            Projection::Perspective { vertical: 0.5, aspect: None, near: 0.1, far: None };
+    fn pose_of(forward: Vec3, up: Vec3, vertical: f32) -> Pose {
+        let projection = Projection::Perspective { vertical, aspect: None, near: 0.1, far: None };
         let (name, position) = (String::new(), -5.0 * forward);
         let camera = scene::Camera { name, position, forward, up, projection };
         let bounds = Aabb::from_points([Vec3::splat(-1.0), Vec3::ONE]);
@@ -262,10 +264,18 @@ mod tests {
     #[test]
     fn a_camera_of_a_file_does_not_tilt_the_world() {
         let down = vec3(0.0, -0.6, -0.8);
-        let pose = pose_of(down, vec3(0.0, 0.8, -0.6));
+        let pose = pose_of(down, vec3(0.0, 0.8, -0.6), 0.5);
         assert_eq!((pose.eye, pose.up, pose.fov_y), (-5.0 * down, Vec3::Y, 0.5));
         assert!(pose.target.length() < 1e-5, "{pose:?}");
         // From straight above there is no other direction that is up.
-        assert_eq!(pose_of(-Vec3::Y, Vec3::X).up, Vec3::X);
+        assert_eq!(pose_of(-Vec3::Y, Vec3::X, 0.5).up, Vec3::X);
+    }
+
+    #[test]
+    fn a_camera_of_a_file_is_one_that_can_be_asked_for() {
+        for vertical in [1e-4, 0.5, 3.1] {
+            let pose = pose_of(-Vec3::Z, Vec3::Y, vertical);
+            assert_eq!(crate::edit::camera(pose), Ok(pose), "{vertical}");
+        }
     }
 }

@@ -102,15 +102,17 @@ fn show(name: String, scan: VolumeFile, serve: Serve<'_>) -> Result<(), Failure>
         Voxels::F32(all) => all,
     };
     let stored = bounds_of(voxels.iter().copied());
-    let histogram = histogram(&voxels, stored);
+    let mut histogram = histogram(&voxels, stored);
+    if scan.scale < 0.0 {
+        // The least voxel has the greatest value.
+        histogram.reverse();
+    }
     let grid = Grid::new(voxels, scan.size, config)?;
     let range = grid.range();
     if range.x > range.y || !range.is_finite() {
         return Err(Failure::Other(format!("{name}: no voxel has a value; check what wrote it")));
     }
-    let bounds = bounds(&grid);
-    let (extent, most) = (bounds.size().max_element(), scan.size.max_element());
-    let voxel = extent / most as f32;
+    let (bounds, voxel) = (bounds(&grid), thickness(&scan.to_world));
     let home = Pose::of_box(bounds, Vec3::Z, vec3(0.75, 1.15, 0.55));
     let [x, y, z] = scan.size.to_array();
     let size = format!("{x} x {y} x {z} voxels, values from {} to {}", range.x, range.y);
@@ -131,10 +133,16 @@ fn bounds(grid: &Grid<'_, f32>) -> Aabb {
     Aabb::from_points((0..8).map(corner))
 }
 
+/// The shortest side of a voxel: steps that are as long as another side would pass over several.
+fn thickness(to_world: &Affine3) -> f32 {
+    let sides = &to_world.matrix3;
+    sides.x_axis.length().min(sides.y_axis.length()).min(sides.z_axis.length())
+}
+
 struct Scan<'a> {
     grid: &'a Grid<'a, f32>,
     field: Field,
-    /// Size of a voxel.
+    /// The shortest side of a voxel.
     voxel: f32,
     /// Those of the volume.
     knots: Vec<Knot>,
@@ -162,7 +170,8 @@ impl<'a> Scan<'a> {
     }
 }
 
-/// The most steps of a pick: more than the diagonal of any grid has.
+/// The most steps of a pick: more than the diagonal of a grid has, unless voxels are far longer than
+/// they are thin.
 const MOST_STEPS: f32 = 1e6;
 
 impl Subject for Scan<'_> {
@@ -233,5 +242,48 @@ impl Scan<'_> {
         let [x, y, z] = voxel.to_array().map(u64::from);
         let id = (z * u64::from(size.y) + y) * u64::from(size.x) + x;
         Picked { id, position, value: format!("voxel ({x}, {y}, {z}), value {value}") }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What is said of a volume of 4 by 3 by 2 voxels, most of which have small numbers.
+    fn info(scale: f32) -> Info {
+        let scan = VolumeFile {
+            size: UVec3::new(4, 3, 2),
+            to_world: Affine3::IDENTITY,
+            is_cell_centred: false,
+            voxels: Voxels::U16((0..24).map(|i| i * i).collect()),
+            scale,
+            offset: 0.0,
+            no_data: None,
+        };
+        let mut found = None;
+        show("a".to_owned(), scan, &mut |info, _| found = Some(info)).expect("a volume");
+        found.expect("it is served")
+    }
+
+    #[test]
+    fn histograms_are_of_values() {
+        let (up, mut down) = (info(2.0), info(-2.0));
+        assert_eq!((up.range.x, up.range.y), (-down.range.y, -down.range.x));
+        let half = up.histogram.len() / 2;
+        let low: u32 = up.histogram[..half].iter().sum();
+        assert!(low > 12 && up.histogram.iter().sum::<u32>() == 24, "{:?}", up.histogram);
+        assert_ne!(up.histogram, down.histogram);
+        down.histogram.reverse();
+        assert_eq!(up.histogram, down.histogram);
+    }
+
+    #[test]
+    fn steps_are_as_short_as_the_shortest_side() {
+        let turn = glam::Quat::from_euler(glam::EulerRot::XYZ, 0.4, 1.1, -0.7);
+        for sides in [vec3(0.1, 1.0, 5.0), vec3(3.0, 0.1, 3.0), vec3(1.0, -7.0, 0.1)] {
+            let to_world = Affine3::from_scale_rotation_translation(sides, turn, Vec3::ONE);
+            let found = thickness(&to_world);
+            assert!((found - 0.1).abs() < 1e-6, "{sides}: {found}");
+        }
     }
 }

@@ -161,6 +161,8 @@ impl Session {
             self.look.knots = preset(info.kind.first_preset()).unwrap_or_default();
             self.look.mode = Mode::of(info.kind)[0];
             self.look.sky = None;
+            // A light that is still read is for what was shown.
+            self.pending_sky = None;
         }
         self.current = Some(data);
         self.questions = 0;
@@ -169,7 +171,6 @@ impl Session {
         self.picked = None;
         self.wgsl = None;
         self.lanes = None;
-        self.pending_sky = None;
         self.info = Some(info);
         self.restart();
     }

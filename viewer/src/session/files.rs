@@ -95,8 +95,12 @@ impl Session {
             return Err("the picture is not sharp yet: hold still".to_owned());
         }
         let (rgba, size) = (self.with_menu(&frame), frame.size);
-        self.add_to_film(&rgba, size)?;
-        self.write(&png_name(name), move |path| write_png(path, &rgba, size));
+        let pixels = rgba.clone();
+        self.write(&png_name(name), move |path| write_png(path, &pixels, size));
+        // The picture is written, whether or not a film takes it.
+        if let Err(message) = self.add_to_film(&rgba, size) {
+            self.refuse(&format!("picture {name}: {message}"));
+        }
         Ok(())
     }
 

@@ -22,6 +22,7 @@ impl Session {
             self.restart();
             return Ok(());
         }
+        let goal = goal.map(Goal::checked).transpose()?;
         if self.current.is_none() {
             return Err("nothing is open".to_owned());
         }
@@ -137,6 +138,32 @@ mod tests {
         let reached = session.reached().expect("it is known what became of it");
         assert_eq!(reached.outcome, Outcome::Converged);
         reached.samples
+    }
+
+    #[test]
+    fn values_that_no_line_has_are_refused_too() {
+        let mut session = Session::new(Config::scripted("out"), Device::default(), || {});
+        let before = session.look().clone();
+        let goal = |error, seconds| Action::Until(Some(Goal { error, seconds }));
+        let nowhere = raydsl_scenes::Pose { eye: Vec3::NAN, ..before.pose };
+        let (above, finite) =
+            ("errors and seconds are above 0 and finite", "an exposure is finite");
+        for (action, expected) in [
+            (goal(0.0, 5.0), above),
+            (goal(-0.1, 5.0), above),
+            (goal(f32::NAN, 5.0), above),
+            (goal(f32::INFINITY, 5.0), above),
+            (goal(0.1, 0.0), above),
+            (goal(0.1, f32::NAN), above),
+            (goal(0.1, f32::INFINITY), above),
+            (goal(0.1, 5.0), "nothing is open"),
+            (Action::Exposure(f32::NAN), finite),
+            (Action::Exposure(f32::INFINITY), finite),
+            (Action::Camera(nowhere), "the camera has no direction"),
+        ] {
+            assert_eq!(session.apply(&action), Err(expected.to_owned()), "{action}");
+        }
+        assert_eq!((session.goal(), session.look()), (None, &before));
     }
 
     #[test]

@@ -18,6 +18,8 @@ pub(super) struct Recording {
     rate: u16,
     size: (u32, u32),
     frames: Vec<Arc<Vec<u8>>>,
+    /// Whether there was no room for a picture: none after it is taken, however small it is.
+    is_full: bool,
 }
 
 impl Session {
@@ -26,8 +28,13 @@ impl Session {
         match film {
             Some(_) if self.recording.is_some() => Err("a film is recorded already".to_owned()),
             Some((name, rate)) => {
-                let (name, size) = (name.clone(), (0, 0));
-                self.recording = Some(Recording { name, rate: *rate, size, frames: Vec::new() });
+                self.recording = Some(Recording {
+                    name: name.clone(),
+                    rate: *rate,
+                    size: (0, 0),
+                    frames: Vec::new(),
+                    is_full: false,
+                });
                 Ok(())
             }
             None => {
@@ -42,13 +49,16 @@ impl Session {
         self.recording.as_ref().map(|recording| recording.frames.len())
     }
 
-    /// Adds a picture to the film, if one is recorded.
+    /// Adds a picture to the film, if one is recorded. That a film has no room is said once: an
+    /// animation may have thousands of pictures after that.
     pub(super) fn add_to_film(
         &mut self,
         rgba: &Arc<Vec<u8>>,
         size: (u32, u32),
     ) -> Result<(), String> {
-        let Some(recording) = &mut self.recording else { return Ok(()) };
+        let Some(recording) = self.recording.as_mut().filter(|film| !film.is_full) else {
+            return Ok(());
+        };
         if recording.frames.is_empty() {
             recording.size = size;
         }
@@ -57,7 +67,12 @@ impl Session {
             return Err(format!("the pictures of the film have {width} x {height} pixels"));
         }
         if (recording.frames.len() + 1) * rgba.len() > MOST_BYTES {
-            return Err("the film has 2 GiB: record end, and begin another one".to_owned());
+            recording.is_full = true;
+            let count = recording.frames.len();
+            return Err(format!(
+                "the film ends after {count} pictures, the most that fit into its 2 GiB: those that \
+                 follow are only written one by one, until another film is begun"
+            ));
         }
         recording.frames.push(rgba.clone());
         Ok(())
@@ -67,10 +82,78 @@ impl Session {
         if recording.frames.is_empty() {
             return Err("the film has no picture".to_owned());
         }
-        let Recording { name, rate, size, frames } = recording;
+        let Recording { name, rate, size, frames, .. } = recording;
         self.write(&super::files::png_name(&name), move |path: &Path| {
             save(path, |part| write_film(part, &frames, size, rate))
         });
         Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::action::Action;
+    use crate::device::Device;
+    use crate::frame::Frame;
+    use crate::session::Config;
+
+    fn session(out: &Path) -> Session {
+        Session::new(Config::scripted(out), Device::default(), || {})
+    }
+
+    fn apply(session: &mut Session, line: &str) {
+        let action: Action = line.parse().expect(line);
+        session.apply(&action).expect(line);
+    }
+
+    #[test]
+    fn that_a_film_is_full_is_said_once() {
+        let mut session = session(Path::new("out"));
+        apply(&mut session, "record film 25");
+        // Zeros that nobody reads take no memory, and the film shares them.
+        let (rgba, size) = (Arc::new(vec![0; MOST_BYTES / 4]), (16384, 8192));
+        for _ in 0..4 {
+            session.add_to_film(&rgba, size).expect("there is room");
+        }
+        let error = session.add_to_film(&rgba, size).expect_err("there is none");
+        assert!(error.starts_with("the film ends after 4 pictures"), "{error}");
+        let small = Arc::new(vec![0; 4]);
+        for (rgba, size) in [(&rgba, size), (&small, (1, 1))] {
+            assert_eq!(session.add_to_film(rgba, size), Ok(()));
+        }
+        assert_eq!(session.recorded(), Some(4));
+    }
+
+    #[test]
+    fn pictures_are_written_where_no_film_takes_them() {
+        let name = format!("raydsl-viewer-record-{}", std::process::id());
+        let out = std::env::temp_dir().join(name);
+        let mut session = session(&out);
+        apply(&mut session, "record film 25");
+        for (name, size) in [("a", (2, 1)), ("b", (1, 2))] {
+            session.frame = Some(Arc::new(Frame {
+                number: session.number(),
+                size,
+                is_coarse: false,
+                samples: 1,
+                rgba: vec![9; 8],
+                texture: None,
+                ms: 1.0,
+                age_ms: 1.0,
+                error: None,
+                difference: None,
+            }));
+            apply(&mut session, &format!("picture {name}"));
+        }
+        apply(&mut session, "record end");
+        session.finish_files();
+        let sizes = ["a.png", "b.png", "film.png"].map(|name| {
+            image::image_dimensions(out.join(name)).unwrap_or_else(|e| panic!("{name}: {e}"))
+        });
+        assert_eq!(sizes, [(2, 1), (1, 2), (2, 1)]);
+        let line = "error: picture b: the pictures of the film have 2 x 1 pixels".to_owned();
+        assert!(session.errors() == 1 && session.log().contains(&line), "{:#?}", session.log());
+        std::fs::remove_dir_all(&out).expect("it is ours");
     }
 }

@@ -239,6 +239,8 @@ impl Viewer {
             {
                 player.cancel(&mut self.session);
             }
+            // The mouse points at the menu that it sees; a key may have closed it in the same turn.
+            Action::Wand(_) | Action::Press if self.session.menu().is_none() => {}
             Action::Quit => ctx.send_viewport_cmd(egui::ViewportCommand::Close),
             action => {
                 let _ = self.session.apply(action);

@@ -10,6 +10,9 @@ use raydsl_viewer::{Action, Frame};
 use super::dialog::Ask;
 use super::{Viewer, input};
 
+/// The most pixels along a side of a picture that is as large as its place.
+const MOST_SIDE: usize = 8192;
+
 /// The picture as a texture.
 #[derive(Default)]
 pub(crate) struct Shown {
@@ -23,7 +26,7 @@ pub(crate) struct Shown {
 
 impl Shown {
     /// Takes a frame, unless it is the one that is shown.
-    fn take(&mut self, ui: &egui::Ui, state: Option<&RenderState>, frame: &Arc<Frame>) {
+    fn take(&mut self, ctx: &egui::Context, state: Option<&RenderState>, frame: &Arc<Frame>) {
         if self.frame.as_ref().is_some_and(|shown| Arc::ptr_eq(shown, frame)) {
             return;
         }
@@ -32,15 +35,21 @@ impl Shown {
             (Some(texture), Some(state)) => self.take_texture(state, texture),
             (Some(_), None) => {}
             (None, _) => {
-                self.device = None;
-                let size = [frame.size.0 as usize, frame.size.1 as usize];
-                let image = egui::ColorImage::from_rgba_unmultiplied(size, &frame.rgba);
+                self.free_texture(state);
+                let image = pixels(frame, ctx.input(|input| input.max_texture_side));
                 let options = egui::TextureOptions::LINEAR;
                 match &mut self.host {
                     Some(host) => host.set(image, options),
-                    None => self.host = Some(ui.ctx().load_texture("picture", image, options)),
+                    None => self.host = Some(ctx.load_texture("picture", image, options)),
                 }
             }
+        }
+    }
+
+    /// Gives the device's texture back: egui keeps what is registered until it is told not to.
+    fn free_texture(&mut self, state: Option<&RenderState>) {
+        if let (Some((_, id)), Some(state)) = (self.device.take(), state) {
+            state.renderer.write().free_texture(&id);
         }
     }
 
@@ -80,10 +89,10 @@ impl Viewer {
             self.dialog.open(Ask::Files, ui.ctx());
         }
         if !self.is_played && self.player.is_none() {
-            self.fit(rect, ui.ctx().pixels_per_point(), actions);
+            self.fit(rect, ui.ctx(), actions);
         }
         if let Some(newest) = self.session.frame() {
-            self.shown.take(ui, frame.wgpu_render_state(), newest);
+            self.shown.take(ui.ctx(), frame.wgpu_render_state(), newest);
         }
         let (width, height) = self.session.look().size;
         let place = fitted(rect, (width as f32, height as f32));
@@ -106,9 +115,11 @@ impl Viewer {
         }
     }
 
-    /// Makes the picture as large as its place.
-    fn fit(&self, rect: egui::Rect, scale: f32, actions: &mut Vec<Action>) {
-        let side = |length: f32| ((length * scale).round() as u32).clamp(1, 8192);
+    /// Makes the picture as large as its place, and as a texture may be.
+    fn fit(&self, rect: egui::Rect, ctx: &egui::Context, actions: &mut Vec<Action>) {
+        let scale = ctx.pixels_per_point();
+        let most = ctx.input(|input| input.max_texture_side).clamp(1, MOST_SIDE) as u32;
+        let side = |length: f32| ((length * scale).round() as u32).clamp(1, most);
         let size = (side(rect.width()), side(rect.height()));
         if size != self.session.look().size {
             actions.push(Action::Size(size.0, size.1));
@@ -147,4 +158,110 @@ impl Place {
 fn fitted(rect: egui::Rect, (width, height): (f32, f32)) -> egui::Rect {
     let scale = (rect.width() / width).min(rect.height() / height);
     egui::Rect::from_center_size(rect.center(), egui::vec2(width, height) * scale)
+}
+
+/// The pixels of a frame, fewer of them where a side is longer than that of a texture may be: a script
+/// may ask for pictures that are larger than what the window's device can show.
+fn pixels(frame: &Frame, most: usize) -> egui::ColorImage {
+    let (width, height) = frame.size;
+    let longest = width.max(height) as usize;
+    let image = image::ImageBuffer::<image::Rgba<u8>, _>::from_raw(width, height, &frame.rgba[..]);
+    if let Some(image) = image.filter(|_| longest > most) {
+        let side = |n: u32| ((n as usize * most / longest) as u32).max(1);
+        let small = image::imageops::thumbnail(&image, side(width), side(height));
+        let size = [small.width() as usize, small.height() as usize];
+        return egui::ColorImage::from_rgba_unmultiplied(size, &small);
+    }
+    egui::ColorImage::from_rgba_unmultiplied([width as usize, height as usize], &frame.rgba)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::window::wgpu_options;
+
+    /// A frame whose columns are black and white in turns.
+    fn frame(width: u32, height: u32) -> Frame {
+        let pixel = |x: u32| if x.is_multiple_of(2) { [0, 0, 0, 255] } else { [255u8; 4] };
+        Frame {
+            number: 1,
+            size: (width, height),
+            is_coarse: false,
+            samples: 1,
+            rgba: (0..height).flat_map(|_| (0..width).flat_map(pixel)).collect(),
+            texture: None,
+            ms: 1.0,
+            age_ms: 1.0,
+            error: None,
+            difference: None,
+        }
+    }
+
+    #[test]
+    fn pictures_larger_than_a_texture_are_shown_smaller() {
+        let ctx = egui::Context::default();
+        let most = ctx.input(|input| input.max_texture_side);
+        let side = most as u32;
+        let mut shown = Shown::default();
+        for (size, expected) in [
+            ((side, 3), [most, 3]),
+            ((2 * side, 8), [most, 4]),
+            ((2, 4 * side), [1, most]),
+            ((side + 1, 1), [most, 1]),
+        ] {
+            shown.take(&ctx, None, &Arc::new(frame(size.0, size.1)));
+            let host = shown.host.as_ref().expect("it has pixels");
+            assert_eq!(host.size(), expected, "{size:?}");
+        }
+        let image = pixels(&frame(8, 4), 4);
+        assert_eq!((image.size, image.pixels.len()), ([4, 2], 8));
+        let is_grey = |c: &egui::Color32| c.r().abs_diff(127) <= 1 && c.a() == 255;
+        assert!(image.pixels.iter().all(is_grey), "means of black and white: {image:?}");
+    }
+
+    /// A renderer of egui without a window, if there is a device.
+    fn renderer() -> Option<RenderState> {
+        let config = wgpu_options();
+        let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle());
+        let made = RenderState::create(&config, &instance, None, Default::default());
+        match pollster::block_on(made) {
+            Ok(state) => Some(state),
+            Err(error) => {
+                let is_required = std::env::var("RAYDSL_REQUIRE_GPU").is_ok_and(|v| v == "1");
+                assert!(!is_required, "RAYDSL_REQUIRE_GPU=1, but {error}");
+                None
+            }
+        }
+    }
+
+    #[test]
+    fn textures_of_the_device_are_given_back() {
+        let Some(state) = renderer() else { return };
+        let on_device = || {
+            let texture = state.device.create_texture(&wgpu::TextureDescriptor {
+                label: None,
+                size: wgpu::Extent3d { width: 4, height: 4, depth_or_array_layers: 1 },
+                mip_level_count: 1,
+                sample_count: 1,
+                dimension: wgpu::TextureDimension::D2,
+                format: wgpu::TextureFormat::Rgba8Unorm,
+                usage: wgpu::TextureUsages::TEXTURE_BINDING,
+                view_formats: &[],
+            });
+            Arc::new(Frame { texture: Some(texture), rgba: Vec::new(), ..frame(4, 4) })
+        };
+        let (ctx, mut shown) = (egui::Context::default(), Shown::default());
+        let mut ids = Vec::new();
+        for _ in 0..3 {
+            for _ in 0..2 {
+                shown.take(&ctx, Some(&state), &on_device());
+                ids.extend(shown.id());
+            }
+            shown.take(&ctx, Some(&state), &Arc::new(frame(4, 4)));
+            assert_eq!(shown.id(), shown.host.as_ref().map(egui::TextureHandle::id));
+            let renderer = state.renderer.read();
+            assert!(ids.iter().all(|id| renderer.texture(id).is_none()), "one is kept: {ids:?}");
+        }
+        assert_eq!(ids.len(), 6);
+    }
 }
