@@ -125,7 +125,7 @@ impl Job<'_> {
         let mut first = 0;
         if wire.rank() == ROOT {
             disk::create_folder(&args.out)?;
-            first = record::frames_so_far(args, &self.description())?;
+            first = record::frames_so_far(args, &description(args, self.parts))?;
         }
         let messages: Vec<Vec<u8>> = match wire.rank() {
             ROOT => vec![first.to_le_bytes().to_vec(); wire.size()],
@@ -134,14 +134,6 @@ impl Job<'_> {
         let from_root = wire.exchange(&messages)?.swap_remove(ROOT);
         let first = from_root.try_into().ok().map(u32::from_le_bytes);
         Ok(first.filter(|first| *first <= args.frames).ok_or(WireError::Damaged { from: ROOT })?)
-    }
-
-    /// Returns what has an influence on frames.
-    fn description(&self) -> String {
-        let &Args { scene, size: (width, height), frames, points, voxels, least, .. } = self.args;
-        let items = if scene == SceneName::Points { points } else { voxels };
-        let scene = scene.name();
-        format!("{scene} of {items}, {width}x{height}, {frames} frames, least {least}")
     }
 
     /// Renders a frame; the root gets the picture.
@@ -179,6 +171,18 @@ impl Job<'_> {
         }
         Ok(Some(picture(size, &strips, &gathered)?))
     }
+}
+
+/// Returns what has an influence on frames. A point is the same in every division; the light of a
+/// volume is rounded at the planes between its parts, and each part leaves out a share of its own.
+fn description(args: &Args, parts: u32) -> String {
+    let &Args { scene, size: (width, height), frames, points, voxels, least, .. } = args;
+    let name = scene.name();
+    let (items, division) = match scene {
+        SceneName::Volume => (voxels, format!(", {parts} parts, least {least}")),
+        _ => (points, String::new()),
+    };
+    format!("{name} of {items}, {width}x{height}, {frames} frames{division}")
 }
 
 /// Returns the picture of the strips of all ranks.
@@ -244,6 +248,8 @@ fn write_pictures(folder: &Path, frame: u32, picture: &Image<Vec3>) -> Result<()
 
 #[cfg(test)]
 mod tests {
+    use clap::Parser;
+
     use super::*;
 
     #[test]
@@ -252,6 +258,18 @@ mod tests {
             let all = (0..ranks).flat_map(|rank| own_parts(parts, rank, ranks));
             assert!(all.eq(0..parts), "{parts} of {ranks}");
         }
+    }
+
+    #[test]
+    fn descriptions_have_what_changes_pixels() {
+        let of =
+            |line: &str, parts: u32| description(&Args::parse_from(line.split_whitespace()), parts);
+        let points = "ranks --scene points --size 30x20 --frames 3 --points 500";
+        assert_eq!(of(points, 2), "points of 500, 30x20, 3 frames");
+        assert_eq!(of(&format!("{points} --least 0.1 --voxels 9"), 5), of(points, 2));
+        let volume = "ranks --scene volume --size 30x20 --frames 3 --voxels 50 --least 0.1";
+        assert_eq!(of(volume, 2), "volume of 50, 30x20, 3 frames, 2 parts, least 0.1");
+        assert_ne!(of(volume, 5), of(volume, 2));
     }
 
     #[test]
