@@ -20,6 +20,14 @@ for (const select of choices.elements) {
   }
   select.addEventListener("change", () => {
     query.set(select.name, select.value);
+    // Another scene counts something else by it, and would refuse the number.
+    if (select.name === "scene") {
+      query.delete("detail");
+    }
+    // Only WGSL is submitted; another variant would be refused.
+    if (choices.elements.variant.value !== "wgsl") {
+      query.delete("submit");
+    }
     history.replaceState(null, "", `?${query}`);
     open();
   });
