@@ -137,7 +137,7 @@ fn the_book_has_the_tables() -> Result<(), Box<dyn Error>> {
 
 /// Compares a generated file of the book, or writes it.
 pub(crate) fn assert_in_book(name: &str, text: &str) -> Result<(), Box<dyn Error>> {
-    let book = Path::new(env!("CARGO_MANIFEST_DIR")).join("../book/src/generated").join(name);
+    let book = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../book/src/generated").join(name);
     if std::env::var("RAYDSL_BLESS").is_ok_and(|v| v == "1") {
         std::fs::write(&book, text)?;
     }
