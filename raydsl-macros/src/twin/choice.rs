@@ -216,7 +216,7 @@ impl Choice<'_> {
     }
 
     fn constants(&self) -> TokenStream {
-        let (p, types) = (private(), self.types());
+        let (p, types, numbers) = (private(), self.types(), self.numbers());
         let is_one = types.len() == 1;
         quote! {
             /// That of the kind, if there is one.
@@ -243,6 +243,17 @@ impl Choice<'_> {
                 )*
                 most
             };
+
+            fn limits_of(kinds: #p::Kinds) -> (f32, u32) {
+                let (mut slack, mut crossings) = (0.0f32, 1u32);
+                #(
+                    if kinds.has(#numbers) {
+                        slack = slack.max(<#types as #p::Primitive>::SLACK);
+                        crossings = crossings.max(<#types as #p::Primitive>::MAX_CROSSINGS);
+                    }
+                )*
+                (slack, crossings)
+            }
         }
     }
 
@@ -343,6 +354,42 @@ impl Choice<'_> {
         let count = self.kinds.len() as u32;
         let own = self.shared_of_kinds(&quote!(shared));
         let wgsl_name = format!("{}_intersect", self.name);
+        let found: Vec<_> = types
+            .iter()
+            .zip(&own)
+            .map(|(ty, own)| {
+                quote! {{
+                    let prim = #p::of_words::<_, #ty, _>(m, prim.words);
+                    <#ty as #p::Primitive>::intersect_on(m, prim, ray, #own)
+                }}
+            })
+            .collect();
+        // One kind needs no variable, in which its lanes would be merged with those of others.
+        let among = if let [found] = &found[..] {
+            quote!(#found)
+        } else {
+            quote! {
+                #(
+                    // What is recorded of a scene with one kind is that of an enum of this kind.
+                    if const { !__M::RUNS } && kinds.is_only(#numbers) {
+                        return #found;
+                    }
+                )*
+                let found = #p::Var::new(m, "found", #p::Value::zero(m));
+                #(
+                    #p::of_kind(
+                        m,
+                        kinds,
+                        prim.kind,
+                        #numbers,
+                        #count,
+                        #[inline(always)]
+                        || found.set(m, #found),
+                    );
+                )*
+                found.get(m)
+            }
+        };
         quote! {
             static __INFO: #p::KernelInfo = #p::KernelInfo {
                 name: #wgsl_name,
@@ -356,27 +403,7 @@ impl Choice<'_> {
                 &__INFO,
                 (prim, ray, shared),
                 #[inline(always)]
-                |m, (prim, ray, shared)| {
-                    let found = #p::Var::new(m, "found", #p::Value::zero(m));
-                    #(
-                        #p::of_kind(
-                            m,
-                            kinds,
-                            prim.kind,
-                            #numbers,
-                            #count,
-                            #[inline(always)]
-                            || {
-                                let prim = #p::of_words::<_, #types, _>(m, prim.words);
-                                found.set(
-                                    m,
-                                    <#types as #p::Primitive>::intersect_on(m, prim, ray, #own)
-                                );
-                            },
-                        );
-                    )*
-                    found.get(m)
-                },
+                |m, (prim, ray, shared)| { #among },
             )
         }
     }

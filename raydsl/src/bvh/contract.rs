@@ -28,7 +28,7 @@ pub(crate) use crate::geometry::slabs::{finite_inverse, is_finite, overlap};
 use crate::geometry::{Hit, Primitive, Ray};
 use crate::machine::generic::{max, min};
 use crate::machine::margin::{Interval, Known};
-use crate::machine::{KnownFunction, Margin, WithoutNan};
+use crate::machine::{Kinds, KnownFunction, Margin, WithoutNan};
 use crate::{Type, kernel};
 
 /// 2^-23: an ulp of a number is at most this fraction of it.
@@ -113,8 +113,18 @@ impl Padding {
     /// Returns the padding of a tree over these primitives.
     #[inline(always)]
     pub(crate) const fn of<P: Primitive>() -> Self {
+        Self::with(P::SLACK)
+    }
+
+    /// Returns that of a tree in which they are of these kinds alone.
+    pub(crate) fn among<P: Primitive>(kinds: Kinds) -> Self {
+        Self::with(P::limits_of(kinds).0)
+    }
+
+    #[inline(always)]
+    const fn with(slack: f32) -> Self {
         // Not 0: a distance that overflows makes the padding infinite, and not a NaN.
-        let slack = if P::SLACK > 0.0 { P::SLACK } else { f32::MIN_POSITIVE };
+        let slack = if slack > 0.0 { slack } else { f32::MIN_POSITIVE };
         Self { slack, origin: 0.0 }
     }
 }

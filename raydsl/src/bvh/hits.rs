@@ -181,10 +181,11 @@ impl<M: Machine, P: Primitive> Search<'_, '_, M, P> {
     fn keep_crossings(&self, hit: HitOn<M>) {
         let m = self.m;
         self.keep((hit, self.ray.t_min));
-        if P::MAX_CROSSINGS < 2 {
+        let most = if M::RUNS { P::MAX_CROSSINGS } else { P::limits_of(self.scene.kinds()).1 };
+        if most < 2 {
             return;
         }
-        if P::MAX_CROSSINGS == 2 {
+        if most == 2 {
             let goes_on = Branch::new(m, B(self.goes_on(hit)));
             if goes_on.then(m) {
                 self.keep(self.next_crossing(hit));
@@ -193,7 +194,7 @@ impl<M: Machine, P: Primitive> Search<'_, '_, M, P> {
             return;
         }
         let at = Var::new(m, "crossing", hit);
-        let left = Var::new(m, "left", U(m.u32(P::MAX_CROSSINGS - 1)));
+        let left = Var::new(m, "left", U(m.u32(most - 1)));
         let repeat = Loop::new(m);
         loop {
             let some_left = m.u32_compare(op::Gt, left.get(m).0, m.u32(0));

@@ -40,12 +40,7 @@ impl Aabb {
 
     /// Returns the smallest box around `points`. A NaN in one makes both bounds of its axis NaN.
     pub fn from_points(points: impl IntoIterator<Item = Vec3>) -> Self {
-        // `min` and `max` of glam would forget a NaN, and what came before it.
-        let nearer = |a: Vec3, b: Vec3, is_nearer| Vec3::select(is_nearer | a.is_nan_mask(), a, b);
-        points.into_iter().fold(Self::EMPTY, |b, p| {
-            let (min, max) = (nearer(b.min, p, b.min.cmplt(p)), nearer(b.max, p, b.max.cmpgt(p)));
-            Self::new(min, max)
-        })
+        points.into_iter().fold(Self::EMPTY, |all, p| all.union(Self::new(p, p)))
     }
 
     /// Returns the smallest `f32` box that contains the sphere around `center`: the faces are
@@ -59,9 +54,14 @@ impl Aabb {
         )
     }
 
-    /// Returns the smallest box around both.
+    /// Returns the smallest box around both. A NaN of either stays, so that the box is not valid.
     pub fn union(self, other: Self) -> Self {
-        Self::new(self.min.min(other.min), self.max.max(other.max))
+        // `min` and `max` of glam would forget a NaN of one of the two.
+        let nearer = |a: Vec3, b: Vec3, is_nearer| Vec3::select(is_nearer | a.is_nan_mask(), a, b);
+        Self::new(
+            nearer(self.min, other.min, self.min.cmplt(other.min)),
+            nearer(self.max, other.max, self.max.cmpgt(other.max)),
+        )
     }
 
     /// Returns the intersection of two boxes; not valid when they are disjoint.

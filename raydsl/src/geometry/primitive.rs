@@ -108,6 +108,12 @@ pub trait Primitive: Type {
         0
     }
 
+    /// Returns the `SLACK` and the `MAX_CROSSINGS` of primitives of these kinds alone.
+    #[doc(hidden)]
+    fn limits_of(_kinds: Kinds) -> (f32, u32) {
+        (Self::SLACK, Self::MAX_CROSSINGS)
+    }
+
     /// Lifted form of `intersect` for one primitive in all lanes.
     #[doc(hidden)]
     #[inline(always)]

@@ -295,7 +295,7 @@ impl<P: Primitive> Operation for Slack<'_, '_, P> {
         match self.0.placed() {
             // A buffer value, since it changes when instances move.
             Some(_) => m.slack_of_places(self.0),
-            None => F(m.f32(Padding::of::<P>().slack)),
+            None => F(m.f32(Padding::among::<P>(self.0.kinds()).slack)),
         }
     }
 

@@ -192,3 +192,72 @@ fn a_plain_kernel_carries_no_rays() {
     assert!(!scene.contains("sin(") && scene.contains("palette_element"), "{scene}");
     assert!(scene.contains("fn Material_shade"), "{scene}");
 }
+
+/// An enum of primitives, of one kind or of several. The others are no larger, which storage would
+/// show.
+macro_rules! primitives {
+    ($name:ident { $($kind:ident),+ }) => {
+        mod $name {
+            use raydsl::kernel;
+            use raydsl::prelude::*;
+
+            #[primitive(sphere(center, radius))]
+            #[derive(Debug)]
+            #[allow(dead_code, reason = "a kind in one of the two alone")]
+            pub(crate) struct Ball {
+                pub(crate) center: Vec3,
+                pub(crate) radius: f32,
+            }
+
+            #[primitive(rectangle(corner, u_edge, v_edge))]
+            #[derive(Debug)]
+            #[allow(dead_code, reason = "a kind in one of the two alone")]
+            pub(crate) struct Panel {
+                pub(crate) corner: Vec3,
+                pub(crate) u_edge: Vec3,
+                pub(crate) v_edge: Vec3,
+            }
+
+            #[primitive(normal)]
+            #[derive(Debug)]
+            #[allow(dead_code, reason = "a kind in one of the two alone")]
+            pub(crate) enum Shape {
+                $($kind($kind)),+
+            }
+
+            /// The texts of queries in a tree, in a slice, and of a method.
+            pub(crate) fn wgsl() -> Vec<String> {
+                let facet = Triangle { v0: Vec3::ZERO, v1: Vec3::X, v2: Vec3::Y };
+                let shapes: Vec<_> = (0..9).map(|_| Shape::Triangle(facet)).collect();
+                let few = &shapes[..2];
+                let Ok(bvh) = Bvh::build(&shapes) else { return Vec::new() };
+                let tree = kernel!(|ray: Ray| (bvh.closest_hit(ray), bvh.any_hit(ray)));
+                let slice = kernel!(|ray: Ray| few.closest_hit(ray).t);
+                let crossings = kernel!(|ray: Ray| {
+                    let mut sum = 0.0;
+                    for hit in bvh.hits(ray) {
+                        sum += hit.t;
+                    }
+                    sum
+                });
+                let normal = kernel!(|ray: Ray| {
+                    let hit = bvh.closest_hit(ray);
+                    bvh.primitive(hit).normal(ray, hit)
+                });
+                vec![tree.wgsl(), slice.wgsl(), crossings.wgsl(), normal.wgsl()]
+            }
+        }
+    };
+}
+
+primitives!(alone { Triangle });
+primitives!(among { Triangle, Ball, Panel });
+
+#[test]
+fn a_kind_that_no_primitive_has_changes_nothing() {
+    let (alone, among) = (alone::wgsl(), among::wgsl());
+    assert_eq!(alone.len(), 4);
+    for (alone, among) in alone.iter().zip(&among) {
+        assert_eq!(alone, among);
+    }
+}

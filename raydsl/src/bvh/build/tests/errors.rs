@@ -4,7 +4,9 @@ use glam::Vec3;
 
 use super::super::{BuildConfig, BuildError, MAX_PRIMITIVES, build};
 use super::Numbers;
-use crate::geometry::Aabb;
+use crate::geometry::{
+    Aabb, cone, cuboid, cylinder, disk, quad, rectangle, sphere, triangle, tube,
+};
 
 /// Returns the error for 40,000 random boxes (several pieces of work) with some replaced.
 fn error_with(replaced: &[(usize, Aabb)]) -> BuildError {
@@ -39,6 +41,35 @@ fn a_box_keeps_a_nan_of_its_points() {
         assert!(bounds.min.y.is_nan() && bounds.max.y.is_nan(), "{bounds:?}");
         assert_eq!(error_with(&[(7, bounds)]), BuildError::NanBounds { index: 7 });
     }
+}
+
+/// The bounds of a shape with these numbers, of which each in turn is a NaN.
+fn check_numbers<const N: usize>(name: &str, bounds: impl Fn([f32; N]) -> Aabb) {
+    let numbers: [f32; N] = core::array::from_fn(|i| (i * i + 1) as f32);
+    assert!(bounds(numbers).is_valid(), "{name}");
+    for i in 0..N {
+        let mut numbers = numbers;
+        numbers[i] = f32::NAN;
+        assert!(!bounds(numbers).is_valid(), "{name}, number {i}: {:?}", bounds(numbers));
+    }
+}
+
+#[test]
+fn a_nan_in_a_shape_is_in_its_box() {
+    let at = Vec3::from_slice;
+    check_numbers("sphere", |n: [f32; 4]| sphere::get_bounds(at(&n), n[3]));
+    check_numbers("cuboid", |n: [f32; 6]| cuboid::get_bounds(at(&n), at(&n[3..])));
+    check_numbers("disk", |n: [f32; 7]| disk::get_bounds(at(&n), at(&n[3..]), n[6]));
+    check_numbers("cylinder", |n: [f32; 7]| cylinder::get_bounds(at(&n), at(&n[3..]), n[6]));
+    check_numbers("tube", |n: [f32; 7]| tube::get_bounds(at(&n), at(&n[3..]), n[6]));
+    check_numbers("cone", |n: [f32; 7]| cone::get_bounds(at(&n), at(&n[3..]), n[6]));
+    check_numbers("rectangle", |n: [f32; 9]| {
+        rectangle::get_bounds(at(&n), at(&n[3..]), at(&n[6..]))
+    });
+    check_numbers("triangle", |n: [f32; 9]| triangle::get_bounds(at(&n), at(&n[3..]), at(&n[6..])));
+    check_numbers("quad", |n: [f32; 12]| {
+        quad::get_bounds(at(&n), at(&n[3..]), at(&n[6..]), at(&n[9..]))
+    });
 }
 
 #[test]

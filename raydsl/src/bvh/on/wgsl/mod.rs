@@ -47,7 +47,7 @@ impl<P: Primitive> Described for SceneView<'_, P> {
         m.buffer_of(self)
     }
     fn slack(&self) -> f32 {
-        Padding::of::<P>().slack
+        Padding::among::<P>(self.kinds()).slack
     }
     fn name(&self) -> Cow<'static, str> {
         Data::name(self)
