@@ -75,7 +75,6 @@ enum OnlyFacets {
 
 #[primitive]
 #[derive(Clone, Copy)]
-#[expect(dead_code, reason = "a kind that no scene has")]
 enum Shape {
     Ball(Ball),
     Facet(Triangle),
