@@ -10,8 +10,8 @@ thread_local! {
 
 /// Whether `f` meets an operation on floats that WGSL leaves open, on the lanes of [`Watch`].
 ///
-/// It leaves open what happens to numbers that are subnormal or not finite, and where a fused
-/// product is rounded; and a driver may reorder what is not exact.
+/// It leaves open what happens to numbers that are subnormal or not finite, the sign of a product
+/// that is a zero, and where a fused product is rounded; and a driver may reorder what is not exact.
 pub fn is_loose(f: impl FnOnce()) -> bool {
     LOOSE.set(false);
     f();
@@ -93,7 +93,13 @@ unsafe impl Lanes for Watch {
         match O::OP {
             F32Binary::Add => see_exact(found, x + y, is_exact_sum(x, y)),
             F32Binary::Sub => see_exact(found, x - y, is_exact_sum(x, -y)),
-            F32Binary::Mul => see_exact(found, x * y, true),
+            F32Binary::Mul => {
+                // Devices make 0 of what is multiplied by 0, whatever its sign.
+                if found == 0.0 && found.is_sign_negative() {
+                    LOOSE.set(true);
+                }
+                see_exact(found, x * y, true)
+            }
             F32Binary::Div => {
                 see_exact(a, f64::from(found) * y, true);
                 see(found)

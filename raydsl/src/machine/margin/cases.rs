@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::math::elementary::sincos_2pi;
-use crate::prelude::{Kernel, kernel};
+use crate::prelude::{Kernel, Vec3, Vec4, kernel, vec3};
 
 /// Asserts that the kernel's result is within an outcome, and returns all outcomes.
 #[track_caller]
@@ -41,6 +41,16 @@ fn the_sign_of_a_product_that_is_zero_is_open() {
     assert!(found.is_complete() && found.contains(1.0f32) && found.contains(-1.0f32));
     let found = held(&sign, (0.0, -2.0));
     assert!(found.contains(-1.0f32) && !found.contains(1.0f32));
+    // So has that of a vector.
+    let signs = kernel!(|x: f32, v: Vec3| (x * v).signum().y);
+    let found = signs.outcomes((0.0, vec3(1.4e29, -1.5, 74.25)), Rounding::WGSL, 64);
+    assert!(found.is_complete() && found.contains(1.0f32) && found.contains(-1.0f32));
+    let signs = kernel!(|v: Vec3| {
+        let x = Vec4::W;
+        (x.y * v).signum()
+    });
+    let found = signs.outcomes((vec3(1.4e29, -1.5, 74.25),), Rounding::WGSL, 64);
+    assert!(found.is_complete() && found.contains(vec3(1.0, 1.0, 1.0)), "{found:?}");
     // It is 0 all the same.
     let is_zero = kernel!(|x: f32, y: f32| x * y == 0.0 && x * y + 3.0 == 3.0);
     assert!(!is_zero.outcomes((0.0, -2.0), Rounding::WGSL, 64).is_uncertain());
