@@ -325,6 +325,18 @@ where
     }
 }
 #[diagnostic::do_not_recommend]
+impl ::raydsl::__private::Declared for Sample {
+    type Twin<__M: ::raydsl::__private::Machine> = <Self as ::raydsl::__private::Type>::On<
+        __M,
+    >;
+    #[inline(always)]
+    fn same<__M: ::raydsl::__private::Machine>(
+        v: <Self as ::raydsl::__private::Type>::On<__M>,
+    ) -> <Self as ::raydsl::__private::Type>::On<__M> {
+        v
+    }
+}
+#[diagnostic::do_not_recommend]
 impl ::raydsl::__private::Type for Sample {
     type On<__M: ::raydsl::__private::Machine> = SampleOn<__M>;
     const SCHEMA: &'static ::raydsl::__private::Schema = &::raydsl::__private::Schema::Struct {

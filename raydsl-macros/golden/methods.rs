@@ -11,7 +11,7 @@ impl Particle {
 }
 impl Particle
 where
-    Particle: ::raydsl::__private::Type,
+    for<'__t> Particle: ::raydsl::__private::Stated<'__t>,
 {
     #[doc(hidden)]
     #[inline(always)]
@@ -33,7 +33,10 @@ where
             __M,
             <Vec3 as ::raydsl::__private::Type>::On<__M>,
         >,
-    ) -> <Particle as ::raydsl::__private::Type>::On<__M> {
+    ) -> <Particle as ::raydsl::__private::Type>::On<__M>
+    where
+        (): ::raydsl::__private::Coerce<__M, ()>,
+    {
         use ::raydsl::__private::operations::*;
         static __INFO: ::raydsl::__private::KernelInfo = ::raydsl::__private::KernelInfo {
             name: "Particle_moved",
@@ -66,6 +69,10 @@ where
                     <Vec3 as ::raydsl::__private::Type>::On<__M>,
                 )|
             {
+                let __this = <Particle as ::raydsl::__private::Declared>::same::<
+                    __M,
+                >(__this);
+                let _ = <Particle as ::raydsl::__private::Declared>::same::<__M>;
                 ::raydsl::__private::Coerce::<
                     __M,
                     <Particle as ::raydsl::__private::Type>::On<__M>,
@@ -103,7 +110,10 @@ where
     )]
     fn at_rest_on<__M: ::raydsl::__private::Machine>(
         __m: &__M,
-    ) -> <Particle as ::raydsl::__private::Type>::On<__M> {
+    ) -> <Particle as ::raydsl::__private::Type>::On<__M>
+    where
+        (): ::raydsl::__private::Coerce<__M, ()>,
+    {
         use ::raydsl::__private::operations::*;
         static __INFO: ::raydsl::__private::KernelInfo = ::raydsl::__private::KernelInfo {
             name: "Particle_at_rest",
@@ -118,6 +128,7 @@ where
             (),
             #[inline(always)]
             |__m: &__M, (): ()| {
+                let _ = <Particle as ::raydsl::__private::Declared>::same::<__M>;
                 ::raydsl::__private::Coerce::<
                     __M,
                     <Particle as ::raydsl::__private::Type>::On<__M>,
@@ -168,7 +179,7 @@ impl<
     (),
 > for Particle
 where
-    Particle: ::raydsl::__private::Type,
+    for<'__t> Particle: ::raydsl::__private::Stated<'__t>,
 {
     type This = <Self as ::raydsl::__private::Type>::On<__M>;
     type Output = <Particle as ::raydsl::__private::Type>::On<__M>;

@@ -31,7 +31,8 @@ impl push {
         >,
     ) -> <Particle as ::raydsl::__private::Type>::On<__M>
     where
-        Particle: ::raydsl::__private::Type,
+        for<'__t> Particle: ::raydsl::__private::Stated<'__t>,
+        (): ::raydsl::__private::Coerce<__M, ()>,
     {
         use ::raydsl::__private::operations::*;
         static __INFO: ::raydsl::__private::KernelInfo = ::raydsl::__private::KernelInfo {
@@ -65,6 +66,8 @@ impl push {
                     <Vec3 as ::raydsl::__private::Type>::On<__M>,
                 )|
             {
+                let p = <Particle as ::raydsl::__private::Declared>::same::<__M>(p);
+                let _ = <Particle as ::raydsl::__private::Declared>::same::<__M>;
                 let by = ::raydsl::__private::Var::new(__m, "by", by);
                 let q = ::raydsl::__private::Var::new(
                     __m,
@@ -114,7 +117,7 @@ impl push {
 #[diagnostic::do_not_recommend]
 impl ::raydsl::__private::KernelFn for push
 where
-    Particle: ::raydsl::__private::Type,
+    for<'__t> Particle: ::raydsl::__private::Stated<'__t>,
 {
     type Args = (Particle, Vec3);
     type Output = Particle;

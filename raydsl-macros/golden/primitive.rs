@@ -354,6 +354,18 @@ where
     }
 }
 #[diagnostic::do_not_recommend]
+impl ::raydsl::__private::Declared for ColorSphere {
+    type Twin<__M: ::raydsl::__private::Machine> = <Self as ::raydsl::__private::Type>::On<
+        __M,
+    >;
+    #[inline(always)]
+    fn same<__M: ::raydsl::__private::Machine>(
+        v: <Self as ::raydsl::__private::Type>::On<__M>,
+    ) -> <Self as ::raydsl::__private::Type>::On<__M> {
+        v
+    }
+}
+#[diagnostic::do_not_recommend]
 impl ::raydsl::__private::Type for ColorSphere {
     type On<__M: ::raydsl::__private::Machine> = ColorSphereOn<__M>;
     const SCHEMA: &'static ::raydsl::__private::Schema = &::raydsl::__private::Schema::Struct {

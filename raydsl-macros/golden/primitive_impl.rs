@@ -9,7 +9,7 @@ impl ColorSphere {
 }
 impl ColorSphere
 where
-    ColorSphere: ::raydsl::__private::Type,
+    for<'__t> ColorSphere: ::raydsl::__private::Stated<'__t>,
 {
     #[doc(hidden)]
     #[inline(always)]
@@ -31,7 +31,10 @@ where
             __M,
             <Ray as ::raydsl::__private::Type>::On<__M>,
         >,
-    ) -> <Hit as ::raydsl::__private::Type>::On<__M> {
+    ) -> <Hit as ::raydsl::__private::Type>::On<__M>
+    where
+        (): ::raydsl::__private::Coerce<__M, ()>,
+    {
         use ::raydsl::__private::operations::*;
         static __INFO: ::raydsl::__private::KernelInfo = ::raydsl::__private::KernelInfo {
             name: "ColorSphere_intersect",
@@ -64,6 +67,9 @@ where
                     <Ray as ::raydsl::__private::Type>::On<__M>,
                 )|
             {
+                let __this = <ColorSphere as ::raydsl::__private::Declared>::same::<
+                    __M,
+                >(__this);
                 ::raydsl::__private::Coerce::<
                     __M,
                     <Hit as ::raydsl::__private::Type>::On<__M>,
@@ -104,7 +110,7 @@ impl<
     (),
 > for ColorSphere
 where
-    ColorSphere: ::raydsl::__private::Type,
+    for<'__t> ColorSphere: ::raydsl::__private::Stated<'__t>,
 {
     type This = <Self as ::raydsl::__private::Type>::On<__M>;
     type Output = <Hit as ::raydsl::__private::Type>::On<__M>;

@@ -10,7 +10,7 @@ enum Shape {
 }
 
 #[kernel]
-fn distance(shape: Shape, point: Vec3) -> f32 { //~ lifted 2
+fn distance(shape: Shape, point: Vec3) -> f32 { //~ lifted
     match shape {
         Shape::Ball(center, radius) => (point - center).length() - radius,
         Shape::Slab { height, thickness } => (point.y - height).abs() - thickness,

@@ -7,7 +7,7 @@ struct Cone {
 }
 
 #[kernel]
-fn shade(cone: Cone) -> f32 { //~ lifted 2
+fn shade(cone: Cone) -> f32 { //~ lifted
     cone.slope
 }
 

@@ -7,7 +7,7 @@ struct Cone {
 }
 
 #[kernel]
-impl Cone { //~ lifted 3
+impl Cone { //~ lifted 2
     fn twice(&self) -> f32 {
         self.slope * 2.0
     }

@@ -9,7 +9,7 @@ struct Ball {
 }
 
 #[kernel]
-fn distance(ball: Ball, point: Vec3) -> f32 { //~ lifted 3
+fn distance(ball: Ball, point: Vec3) -> f32 { //~ lifted
     (point - ball.center).length() - ball.radius
 }
 

@@ -45,6 +45,7 @@ pub(crate) fn kernel_fn(item: &syn::ItemFn, known: Option<&KnownBy>) -> TokenStr
         around: &Generics::default(),
         vis: &visible_from_inside(&item.vis),
         is_method: false,
+        asserts_self: false,
     };
     let mut lifted = lifted_function(&kernel, &place, &mut errors);
     if is_generic {

@@ -86,6 +86,7 @@ fn lifted_impl(
             around: &around,
             vis: &f.vis.to_token_stream(),
             is_method: true,
+            asserts_self: item.trait_.is_none(),
         };
         let function = lifted_function(&kernel, &place, errors);
         if kernel.is_broken {
@@ -342,6 +343,7 @@ pub(crate) fn kernel_trait(item: &syn::ItemTrait) -> TokenStream {
             around: &around,
             vis: &TokenStream::new(),
             is_method: true,
+            asserts_self: false,
         };
         match &f.default {
             Some(body) => {

@@ -18,7 +18,7 @@ pub(crate) use scene::scene;
 pub(crate) use shape::{Shape, with_shape};
 
 use proc_macro2::{Ident, TokenStream};
-use quote::{format_ident, quote};
+use quote::{ToTokens, format_ident, quote};
 
 use crate::diag::Errors;
 use crate::emit::Emitter;
@@ -73,6 +73,8 @@ struct Place<'a> {
     vis: &'a TokenStream,
     /// Whether it has a `where` clause of its own; that of a free kernel is the type's.
     is_method: bool,
+    /// Whether the `impl` around it asserts that its type is one of kernels.
+    asserts_self: bool,
 }
 
 /// Returns the generic function that runs the lifted body on any machine.
@@ -89,7 +91,8 @@ fn lifted_function(kernel: &Kernel, place: &Place<'_>, errors: &mut Errors) -> T
     let head = head(kernel, place, &emitter);
     let info = info(kernel, place.wgsl_name);
     let quiet = quiet();
-    let call = call_of(&body, kernel, &emitter);
+    let declared = declared(kernel, place);
+    let call = call_of(&quote!(#declared #body), kernel, &emitter);
     let call = with_changes_set(call, kernel, &emitter);
     errors.append(seen);
     quote! {
@@ -160,8 +163,8 @@ fn with_changes_set(call: TokenStream, kernel: &Kernel, emitter: &Emitter<'_>) -
     }
 }
 
-/// Returns assertions that the user's own types in a signature are types of kernels. If one is not,
-/// this is the error, and the code that uses it gives no others.
+/// Returns assertions that the user's own types in a signature are types of kernels, so that uses of one
+/// that is not give no errors. [`declared`] gives the error.
 fn asserted(kernel: &Kernel) -> TokenStream {
     let is_value = |p: &&Param| !(p.data || p.scene || p.host || p.function.is_some());
     let values = kernel.params.iter().filter(is_value).map(|p| &p.ty);
@@ -177,12 +180,50 @@ fn asserted(kernel: &Kernel) -> TokenStream {
 
 /// Returns an assertion that a user's own type is one of kernels.
 fn asserted_type(ty: &TokenStream, generics: &Generics) -> TokenStream {
-    if !is_users_own(ty) || generics.has_type_in(ty) {
+    if !is_asserted(ty, generics) {
         return TokenStream::new();
     }
     let _at = of_type(ty);
     let (p, ty) = (private_here(), in_one_place(ty.clone()));
-    quote_here!(#ty: #p::Type,)
+    quote_here!(for<'__t> #ty: #p::Stated<'__t>,)
+}
+
+/// Returns whether a type of a signature is a user's own, which may be no type of kernels.
+fn is_asserted(ty: &TokenStream, generics: &Generics) -> bool {
+    is_users_own(ty) && !generics.has_type_in(ty)
+}
+
+/// Emits what begins a body: for each parameter, and for the result, whether its type is one of kernels.
+/// The first time that one is not, all at the same place, rustc says so; values of it then have a type about
+/// which rustc reports nothing.
+fn declared(kernel: &Kernel, place: &Place<'_>) -> TokenStream {
+    let own = place.self_ty.filter(|_| place.asserts_self);
+    let of_signature = |ty: &TokenStream| {
+        let text = ty.to_string();
+        let own = own.filter(|own| text == "Self" || text == own.to_string());
+        let asserted = match own {
+            Some(own) => Some(own).filter(|own| is_asserted(own, place.around)),
+            None => Some(ty).filter(|ty| !place.is_method && is_asserted(ty, &kernel.generics)),
+        };
+        asserted.cloned()
+    };
+    let is_value = |p: &&Param| !(p.data || p.scene || p.host || p.function.is_some());
+    let mut seen = Vec::new();
+    let params = kernel.params.iter().filter(is_value).filter_map(|param| {
+        let ty = of_signature(&param.ty)?;
+        seen.push(ty.to_string());
+        let _at = of_type(&ty);
+        let (p, name, ty) = (private_here(), param_ident(&param.name), in_one_place(ty));
+        Some(quote_here!(let #name = <#ty as #p::Declared>::same::<__M>(#name);))
+    });
+    let params: TokenStream = params.collect();
+    let result = kernel.result.as_ref().and_then(of_signature);
+    let result = result.filter(|ty| !seen.contains(&ty.to_string())).map(|ty| {
+        let _at = of_type(&ty);
+        let (p, ty) = (private_here(), in_one_place(ty));
+        quote_here!(let _ = <#ty as #p::Declared>::same::<__M>;)
+    });
+    quote!(#params #result)
 }
 
 /// Returns whether it is a path without parameters that names none of the library's types.
@@ -253,11 +294,22 @@ fn head(kernel: &Kernel, place: &Place<'_>, emitter: &Emitter<'_>) -> TokenStrea
     let asserted = asserted(kernel);
     let results = closure_results(kernel, &|ty| emitter.on(ty));
     let clause = if place.is_method { quote!(where #predicates) } else { quote!(where #asserted) };
+    let unguided = is_declared(kernel, place).then(|| quote!((): #p::Coerce<__M, ()>,));
     quote! {
         #vis fn #fn_name<#lifetime __M: #p::Machine, #declared #results>(
             #m: &__M,
             #(#params,)*
         ) -> #result
-        #clause
+        #clause #unguided
     }
+}
+
+/// Returns whether a type of the signature may be none of kernels. rustc then takes a value of an unknown
+/// type for one of the only parameter with a bound; with two bounds it takes it for none.
+fn is_declared(kernel: &Kernel, place: &Place<'_>) -> bool {
+    let is_slice = |param: &Param| {
+        let slice = syn::parse2::<syn::TypeSlice>(param.ty.clone());
+        slice.is_ok_and(|slice| is_asserted(&slice.elem.to_token_stream(), &kernel.generics))
+    };
+    !declared(kernel, place).is_empty() || kernel.params.iter().any(|p| p.data && is_slice(p))
 }

@@ -81,6 +81,7 @@ fn lifted_operator(item: &syn::ItemImpl, errors: &mut Errors) -> Option<TokenStr
         around: &around,
         vis: &TokenStream::new(),
         is_method: true,
+        asserts_self: false,
     };
     let function = lifted_function(&kernel, &place, errors);
     if kernel.is_broken {

@@ -181,6 +181,16 @@ impl Enumeration<'_> {
         let (p, name, twin, variants) = (private(), &self.item.ident, &self.twin, self.variants);
         let (count, numbers) = (variants.len() as u32, 0u32..);
         quote! {
+            #[diagnostic::do_not_recommend]
+            impl #p::Declared for #name {
+                type Twin<__M: #p::Machine> = <Self as #p::Type>::On<__M>;
+
+                #[inline(always)]
+                fn same<__M: #p::Machine>(v: <Self as #p::Type>::On<__M>) -> <Self as #p::Type>::On<__M> {
+                    v
+                }
+            }
+
             impl #p::Type for #name {
                 type On<__M: #p::Machine> = #twin<__M>;
 

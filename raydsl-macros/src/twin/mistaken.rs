@@ -18,6 +18,14 @@ pub(super) fn mistaken(item: &syn::DeriveInput, errors: Errors) -> TokenStream {
         const _: () = {
             type Mistaken = #mistaken;
 
+            impl #p::Declared for #name {
+                type Twin<__M: #p::Machine> = Mistaken;
+
+                fn same<__M: #p::Machine>(v: Mistaken) -> Mistaken {
+                    v
+                }
+            }
+
             impl #p::Type for #name {
                 type On<__M: #p::Machine> = Mistaken;
 

@@ -279,6 +279,16 @@ impl Sum {
         let Generics { declared, predicates, .. } = &self.generics;
         quote! {
             #[diagnostic::do_not_recommend]
+            impl<#declared> #p::Declared for #host where #predicates {
+                type Twin<__M: #p::Machine> = <Self as #p::Type>::On<__M>;
+
+                #[inline(always)]
+                fn same<__M: #p::Machine>(v: <Self as #p::Type>::On<__M>) -> <Self as #p::Type>::On<__M> {
+                    v
+                }
+            }
+
+            #[diagnostic::do_not_recommend]
             impl<#declared> #p::Type for #host where #predicates {
                 type On<__M: #p::Machine> = #twin;
 

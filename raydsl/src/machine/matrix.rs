@@ -9,7 +9,7 @@ use glam::{Affine3, Mat3, Mat4, Vec3, Vec4};
 use super::vector::Floats;
 use super::{
     F, Field, LaneMachine, Leaves, Machine, OpAdd, OpDiv, OpMul, OpNeg, OpSub, Schema, Type, V3,
-    V4, Value, Varying, op,
+    V4, Value, Varying, declared, op,
 };
 
 macro_rules! columns {
@@ -52,6 +52,8 @@ macro_rules! columns {
                 self
             }
         }
+
+        declared!(() $host);
 
         impl Type for $host {
             type On<M: Machine> = $twin<M>;

@@ -6,7 +6,7 @@ use super::ops::{Comparable, OpCompare};
 use super::types::from_each_lane;
 use super::{
     B, Compare, Field, Inferred, LaneMachine, Leaves, Machine, Method, Op, Scalar, Schema, Twin,
-    Type, Value, Varying, index, name,
+    Type, Value, Varying, declared, index, name,
 };
 
 /// Returns a value of the host whose scalars are 0.
@@ -94,6 +94,8 @@ impl<M: Machine, T: Type> Value<M> for OptionOn<M, T> {
         of(Value::zip(m, a.is_some, b.is_some, f), Value::zip(m, a.value, b.value, f))
     }
 }
+
+declared!((T: Type) Option<T>);
 
 #[diagnostic::do_not_recommend]
 impl<T: Type> Type for Option<T> {

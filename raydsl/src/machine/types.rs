@@ -34,6 +34,56 @@ pub trait Type: Copy + Send + Sync + 'static {
     fn read(bytes: &[u8]) -> Self;
 }
 
+/// A type of kernels by its own declaration, whatever a bound says: every [`Type`] has this.
+///
+/// Lifted functions state that their types are types of kernels, so that a type that is none is one
+/// error, not one at each of its uses. But then their bodies know no more of it than that. Values of
+/// this trait's twin are of a type about which rustc reports nothing.
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` cannot be used in a kernel",
+    label = "not a type that kernels understand",
+    note = "derive it, if it is made of such types: #[derive(Clone, Copy, raydsl::Type)]"
+)]
+pub trait Declared {
+    /// The same as [`Type::On`].
+    type Twin<M: Machine>;
+
+    /// Returns the value.
+    fn same<M: Machine>(v: <Self as Type>::On<M>) -> Self::Twin<M>
+    where
+        Self: Type;
+}
+
+/// [`Type`], as a bound that names a lifetime: rustc reports any other bound that is false where it
+/// stands.
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` cannot be used in a kernel",
+    label = "not a type that kernels understand",
+    note = "derive it, if it is made of such types: #[derive(Clone, Copy, raydsl::Type)]"
+)]
+pub trait Stated<'a>: Type {}
+
+impl<T: Type> Stated<'_> for T {}
+
+/// Declares types of the library, which users may name anew.
+macro_rules! declared {
+    ($(($($params:tt)*) $host:ty),+ $(,)?) => {
+        $(
+            #[diagnostic::do_not_recommend]
+            impl<$($params)*> $crate::machine::Declared for $host {
+                type Twin<M: $crate::machine::Machine> = <Self as $crate::Type>::On<M>;
+
+                #[inline(always)]
+                fn same<M: $crate::machine::Machine>(v: Self::Twin<M>) -> Self::Twin<M> {
+                    v
+                }
+            }
+        )+
+    };
+}
+
+pub(crate) use declared;
+
 /// A machine whose lanes hold numbers: all but the recorder.
 #[expect(missing_docs, reason = "two methods a scalar type")]
 pub trait LaneMachine: Machine {
@@ -80,6 +130,8 @@ macro_rules! read_scalar {
 
 macro_rules! scalar_type {
     ($host:tt, $twin:ident, $schema:ident, $make:ident, $from:ident, $lane:ident) => {
+        declared!(() $host);
+
         #[diagnostic::do_not_recommend]
         impl Type for $host {
             type On<M: Machine> = $twin<M>;
@@ -116,6 +168,8 @@ scalar_type!(f32, F, F32, f32, f32_from_fn, f32_lane);
 scalar_type!(i32, I, I32, i32, i32_from_fn, i32_lane);
 scalar_type!(u32, U, U32, u32, u32_from_fn, u32_lane);
 scalar_type!(bool, B, Bool, bool, bool_from_fn, bool_lane);
+
+declared!(() usize, () (), (T: Type, const N: usize) [T; N]);
 
 /// Indexes with 32 bits in a kernel; the upper bits of a host's `usize` are lost.
 #[diagnostic::do_not_recommend]
@@ -156,6 +210,8 @@ macro_rules! vector_type {
         $(vector_type!(@one $twin $n $all $host $element);)+
     };
     (@one $twin:ident $n:literal ($($c:ident)+) $host:ident $element:ident) => {
+        declared!(() $host);
+
         #[diagnostic::do_not_recommend]
         impl Type for $host {
             type On<M: Machine> = $twin<<$element as Type>::On<M>>;
@@ -281,6 +337,8 @@ macro_rules! tuple_type {
                 [$($name::SCHEMA),+],
             );
         }
+
+        declared!(($($name: Type),+) ($($name,)+));
 
         impl<$($name: Type),+> Type for ($($name,)+) {
             type On<M: Machine> = ($($name::On<M>,)+);

@@ -57,6 +57,8 @@ macro_rules! code {
             }
         }
 
+        $crate::machine::declared!(() $name);
+
         impl Type for $name {
             type On<M: Machine> = $twin<M>;
 
