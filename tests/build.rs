@@ -5,11 +5,12 @@
 fn main() {
     println!("cargo:rerun-if-changed=build.rs");
     println!("cargo:rerun-if-env-changed=RAYDSL_VARIANTS");
-    println!("cargo:rustc-check-cfg=cfg(has_avx512)");
+    println!("cargo:rustc-check-cfg=cfg(has_avx512, chooses_variants)");
     if runs_avx512() {
         println!("cargo:rustc-cfg=has_avx512");
     } else if targets_x86() && std::env::var_os("RAYDSL_VARIANTS").is_none() {
         println!("cargo:rustc-env=RAYDSL_VARIANTS=packet4,packet8,wgsl,reference");
+        println!("cargo:rustc-cfg=chooses_variants");
     }
 }
 

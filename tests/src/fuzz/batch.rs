@@ -72,8 +72,11 @@ impl Workshop {
             command.arg("--release");
         }
         command.current_dir(concat!(env!("CARGO_MANIFEST_DIR"), "/.."));
-        // Cargo hands on what the build script sets. Were it set for cargo, all would be built again.
-        command.env_remove("RAYDSL_VARIANTS");
+        // Cargo hands on what the build script sets; set for cargo, it would build all again. What the
+        // environment itself has stays, or all would be built again too.
+        if cfg!(chooses_variants) {
+            command.env_remove("RAYDSL_VARIANTS");
+        }
         let output = command.output().expect("cargo can be started");
         let messages = String::from_utf8_lossy(&output.stdout);
         let errors = String::from_utf8_lossy(&output.stderr);
