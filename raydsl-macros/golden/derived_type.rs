@@ -325,14 +325,12 @@ where
     }
 }
 #[diagnostic::do_not_recommend]
-impl ::raydsl::__private::Declared for Sample {
+impl ::raydsl::__private::KernelType for Sample {
     type Twin<__M: ::raydsl::__private::Machine> = <Self as ::raydsl::__private::Type>::On<
         __M,
     >;
     #[inline(always)]
-    fn same<__M: ::raydsl::__private::Machine>(
-        v: <Self as ::raydsl::__private::Type>::On<__M>,
-    ) -> <Self as ::raydsl::__private::Type>::On<__M> {
+    fn same<__M: ::raydsl::__private::Machine>(v: Self::Twin<__M>) -> Self::Twin<__M> {
         v
     }
 }

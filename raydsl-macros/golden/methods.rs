@@ -36,6 +36,7 @@ where
     ) -> <Particle as ::raydsl::__private::Type>::On<__M>
     where
         (): ::raydsl::__private::Coerce<__M, ()>,
+        ((),): ::raydsl::__private::Coerce<__M, ((),)>,
     {
         use ::raydsl::__private::operations::*;
         static __INFO: ::raydsl::__private::KernelInfo = ::raydsl::__private::KernelInfo {
@@ -69,10 +70,9 @@ where
                     <Vec3 as ::raydsl::__private::Type>::On<__M>,
                 )|
             {
-                let __this = <Particle as ::raydsl::__private::Declared>::same::<
+                let __this = <Particle as ::raydsl::__private::KernelType>::same::<
                     __M,
                 >(__this);
-                let _ = <Particle as ::raydsl::__private::Declared>::same::<__M>;
                 ::raydsl::__private::Coerce::<
                     __M,
                     <Particle as ::raydsl::__private::Type>::On<__M>,
@@ -113,6 +113,7 @@ where
     ) -> <Particle as ::raydsl::__private::Type>::On<__M>
     where
         (): ::raydsl::__private::Coerce<__M, ()>,
+        ((),): ::raydsl::__private::Coerce<__M, ((),)>,
     {
         use ::raydsl::__private::operations::*;
         static __INFO: ::raydsl::__private::KernelInfo = ::raydsl::__private::KernelInfo {
@@ -128,7 +129,7 @@ where
             (),
             #[inline(always)]
             |__m: &__M, (): ()| {
-                let _ = <Particle as ::raydsl::__private::Declared>::same::<__M>;
+                let _ = <Particle as ::raydsl::__private::KernelType>::same::<__M>;
                 ::raydsl::__private::Coerce::<
                     __M,
                     <Particle as ::raydsl::__private::Type>::On<__M>,

@@ -33,6 +33,7 @@ impl push {
     where
         for<'__t> Particle: ::raydsl::__private::Stated<'__t>,
         (): ::raydsl::__private::Coerce<__M, ()>,
+        ((),): ::raydsl::__private::Coerce<__M, ((),)>,
     {
         use ::raydsl::__private::operations::*;
         static __INFO: ::raydsl::__private::KernelInfo = ::raydsl::__private::KernelInfo {
@@ -66,8 +67,7 @@ impl push {
                     <Vec3 as ::raydsl::__private::Type>::On<__M>,
                 )|
             {
-                let p = <Particle as ::raydsl::__private::Declared>::same::<__M>(p);
-                let _ = <Particle as ::raydsl::__private::Declared>::same::<__M>;
+                let p = <Particle as ::raydsl::__private::KernelType>::same::<__M>(p);
                 let by = ::raydsl::__private::Var::new(__m, "by", by);
                 let q = ::raydsl::__private::Var::new(
                     __m,

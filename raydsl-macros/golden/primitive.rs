@@ -354,14 +354,12 @@ where
     }
 }
 #[diagnostic::do_not_recommend]
-impl ::raydsl::__private::Declared for ColorSphere {
+impl ::raydsl::__private::KernelType for ColorSphere {
     type Twin<__M: ::raydsl::__private::Machine> = <Self as ::raydsl::__private::Type>::On<
         __M,
     >;
     #[inline(always)]
-    fn same<__M: ::raydsl::__private::Machine>(
-        v: <Self as ::raydsl::__private::Type>::On<__M>,
-    ) -> <Self as ::raydsl::__private::Type>::On<__M> {
+    fn same<__M: ::raydsl::__private::Machine>(v: Self::Twin<__M>) -> Self::Twin<__M> {
         v
     }
 }

@@ -34,6 +34,7 @@ where
     ) -> <Hit as ::raydsl::__private::Type>::On<__M>
     where
         (): ::raydsl::__private::Coerce<__M, ()>,
+        ((),): ::raydsl::__private::Coerce<__M, ((),)>,
     {
         use ::raydsl::__private::operations::*;
         static __INFO: ::raydsl::__private::KernelInfo = ::raydsl::__private::KernelInfo {
@@ -67,7 +68,7 @@ where
                     <Ray as ::raydsl::__private::Type>::On<__M>,
                 )|
             {
-                let __this = <ColorSphere as ::raydsl::__private::Declared>::same::<
+                let __this = <ColorSphere as ::raydsl::__private::KernelType>::same::<
                     __M,
                 >(__this);
                 ::raydsl::__private::Coerce::<

@@ -9,8 +9,16 @@ enum Shape {
 }
 
 #[kernel]
-fn thickness_of(shapes: &[Shape], i: u32) -> f32 { //~ lifted
+fn thickness_of(shapes: &[Shape], i: u32) -> f32 { //~ lifted 2
     match shapes[i as usize] {
+        Shape::Slab { thickness, .. } => thickness,
+        Shape::Nothing => 0.0,
+    }
+}
+
+#[kernel]
+fn first(shapes: &[Shape]) -> f32 {
+    match shapes[0] {
         Shape::Slab { thickness, .. } => thickness,
         Shape::Nothing => 0.0,
     }

@@ -91,8 +91,8 @@ fn lifted_function(kernel: &Kernel, place: &Place<'_>, errors: &mut Errors) -> T
     let head = head(kernel, place, &emitter);
     let info = info(kernel, place.wgsl_name);
     let quiet = quiet();
-    let declared = declared(kernel, place);
-    let call = call_of(&quote!(#declared #body), kernel, &emitter);
+    let checks = checks(kernel, place);
+    let call = call_of(&quote!(#checks #body), kernel, &emitter);
     let call = with_changes_set(call, kernel, &emitter);
     errors.append(seen);
     quote! {
@@ -164,10 +164,9 @@ fn with_changes_set(call: TokenStream, kernel: &Kernel, emitter: &Emitter<'_>) -
 }
 
 /// Returns assertions that the user's own types in a signature are types of kernels, so that uses of one
-/// that is not give no errors. [`declared`] gives the error.
+/// that is not give no errors. [`checks`] give the error.
 fn asserted(kernel: &Kernel) -> TokenStream {
-    let is_value = |p: &&Param| !(p.data || p.scene || p.host || p.function.is_some());
-    let values = kernel.params.iter().filter(is_value).map(|p| &p.ty);
+    let values = kernel.params.iter().filter(|p| is_value(p)).map(|p| &p.ty);
     let mut seen = Vec::new();
     let asserted = values.chain(&kernel.result).filter_map(|ty| {
         let text = ty.to_string();
@@ -193,37 +192,70 @@ fn is_asserted(ty: &TokenStream, generics: &Generics) -> bool {
     is_users_own(ty) && !generics.has_type_in(ty)
 }
 
-/// Emits what begins a body: for each parameter, and for the result, whether its type is one of kernels.
-/// The first time that one is not, all at the same place, rustc says so; values of it then have a type about
-/// which rustc reports nothing.
-fn declared(kernel: &Kernel, place: &Place<'_>) -> TokenStream {
-    let own = place.self_ty.filter(|_| place.asserts_self);
-    let of_signature = |ty: &TokenStream| {
+/// Returns the parameters and the result whose types are asserted to be types of kernels: the names of
+/// parameters, and the types. Equal types are the tokens of the first, and the result is left out if a
+/// parameter has its type. Each method of a type checks that type, which may be in its body alone.
+fn asserted_here(kernel: &Kernel, place: &Place<'_>) -> Vec<(Option<Ident>, TokenStream)> {
+    let own = place.self_ty.filter(|own| place.asserts_self && is_asserted(own, place.around));
+    let own_text = place.self_ty.map(ToString::to_string);
+    let asserted = |ty: &TokenStream| {
         let text = ty.to_string();
-        let own = own.filter(|own| text == "Self" || text == own.to_string());
-        let asserted = match own {
-            Some(own) => Some(own).filter(|own| is_asserted(own, place.around)),
-            None => Some(ty).filter(|ty| !place.is_method && is_asserted(ty, &kernel.generics)),
-        };
-        asserted.cloned()
+        if text == "Self" || Some(&text) == own_text.as_ref() {
+            return own.cloned();
+        }
+        (!place.is_method && is_asserted(ty, &kernel.generics)).then(|| ty.clone())
     };
-    let is_value = |p: &&Param| !(p.data || p.scene || p.host || p.function.is_some());
-    let mut seen = Vec::new();
-    let params = kernel.params.iter().filter(is_value).filter_map(|param| {
-        let ty = of_signature(&param.ty)?;
-        seen.push(ty.to_string());
-        let _at = of_type(&ty);
-        let (p, name, ty) = (private_here(), param_ident(&param.name), in_one_place(ty));
-        Some(quote_here!(let #name = <#ty as #p::Declared>::same::<__M>(#name);))
-    });
-    let params: TokenStream = params.collect();
-    let result = kernel.result.as_ref().and_then(of_signature);
-    let result = result.filter(|ty| !seen.contains(&ty.to_string())).map(|ty| {
+    let mut found: Vec<(Option<Ident>, TokenStream)> = Vec::new();
+    for param in kernel.params.iter().filter(|p| is_value(p)) {
+        let Some(ty) = asserted(&param.ty) else { continue };
+        let text = ty.to_string();
+        let first = found.iter().find(|(_, other)| other.to_string() == text);
+        let ty = first.map_or(ty, |(_, first)| first.clone());
+        found.push((Some(param_ident(&param.name)), ty));
+    }
+    for ty in kernel.result.as_ref().and_then(asserted).into_iter().chain(own.cloned()) {
+        let text = ty.to_string();
+        if !found.iter().any(|(_, other)| other.to_string() == text) {
+            found.push((None, ty));
+        }
+    }
+    found
+}
+
+/// Emits what begins a body: whether the asserted types are types of kernels. Where one is not, rustc says
+/// so, once for all that are at the same place; the value then has a type about which rustc reports nothing.
+fn checks(kernel: &Kernel, place: &Place<'_>) -> TokenStream {
+    let check = |(name, ty): (Option<Ident>, TokenStream)| {
         let _at = of_type(&ty);
         let (p, ty) = (private_here(), in_one_place(ty));
-        quote_here!(let _ = <#ty as #p::Declared>::same::<__M>;)
-    });
-    quote!(#params #result)
+        let same = quote_here!(<#ty as #p::KernelType>::same::<__M>);
+        match name {
+            Some(name) => quote_here!(let #name = #same(#name);),
+            None => quote_here!(let _ = #same;),
+        }
+    };
+    asserted_here(kernel, place).into_iter().map(check).collect()
+}
+
+/// Returns bounds that are true, for signatures with a type that may be none of kernels. rustc would take
+/// a value of unknown type for what the only bound is about, and report that it is not what is wanted; of
+/// two bounds it takes none.
+fn two_bounds(kernel: &Kernel, place: &Place<'_>) -> TokenStream {
+    let is_slice = |param: &Param| {
+        let slice = syn::parse2::<syn::TypeSlice>(param.ty.clone());
+        slice.is_ok_and(|slice| is_asserted(&slice.elem.to_token_stream(), &kernel.generics))
+    };
+    let has_slice = kernel.params.iter().any(|p| p.data && is_slice(p));
+    if !has_slice && asserted_here(kernel, place).is_empty() {
+        return TokenStream::new();
+    }
+    let p = private();
+    quote!((): #p::Coerce<__M, ()>, ((),): #p::Coerce<__M, ((),)>,)
+}
+
+/// Returns whether a parameter is a value.
+fn is_value(param: &Param) -> bool {
+    !(param.data || param.scene || param.host || param.function.is_some())
 }
 
 /// Returns whether it is a path without parameters that names none of the library's types.
@@ -294,22 +326,12 @@ fn head(kernel: &Kernel, place: &Place<'_>, emitter: &Emitter<'_>) -> TokenStrea
     let asserted = asserted(kernel);
     let results = closure_results(kernel, &|ty| emitter.on(ty));
     let clause = if place.is_method { quote!(where #predicates) } else { quote!(where #asserted) };
-    let unguided = is_declared(kernel, place).then(|| quote!((): #p::Coerce<__M, ()>,));
+    let two_bounds = two_bounds(kernel, place);
     quote! {
         #vis fn #fn_name<#lifetime __M: #p::Machine, #declared #results>(
             #m: &__M,
             #(#params,)*
         ) -> #result
-        #clause #unguided
+        #clause #two_bounds
     }
-}
-
-/// Returns whether a type of the signature may be none of kernels. rustc then takes a value of an unknown
-/// type for one of the only parameter with a bound; with two bounds it takes it for none.
-fn is_declared(kernel: &Kernel, place: &Place<'_>) -> bool {
-    let is_slice = |param: &Param| {
-        let slice = syn::parse2::<syn::TypeSlice>(param.ty.clone());
-        slice.is_ok_and(|slice| is_asserted(&slice.elem.to_token_stream(), &kernel.generics))
-    };
-    !declared(kernel, place).is_empty() || kernel.params.iter().any(|p| p.data && is_slice(p))
 }

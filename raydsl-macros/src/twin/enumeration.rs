@@ -3,7 +3,7 @@
 use proc_macro2::{Ident, TokenStream};
 use quote::{format_ident, quote};
 
-use super::shared::{kinds, methods};
+use super::shared::{kernel_type, kinds, methods};
 use crate::diag::Errors;
 use crate::generics::Generics;
 use crate::here::private;
@@ -180,16 +180,9 @@ impl Enumeration<'_> {
     fn type_impl(&self) -> TokenStream {
         let (p, name, twin, variants) = (private(), &self.item.ident, &self.twin, self.variants);
         let (count, numbers) = (variants.len() as u32, 0u32..);
+        let kernel_type = kernel_type(&quote!(#name), &Generics::default());
         quote! {
-            #[diagnostic::do_not_recommend]
-            impl #p::Declared for #name {
-                type Twin<__M: #p::Machine> = <Self as #p::Type>::On<__M>;
-
-                #[inline(always)]
-                fn same<__M: #p::Machine>(v: <Self as #p::Type>::On<__M>) -> <Self as #p::Type>::On<__M> {
-                    v
-                }
-            }
+            #kernel_type
 
             impl #p::Type for #name {
                 type On<__M: #p::Machine> = #twin<__M>;

@@ -18,7 +18,7 @@ pub(super) fn mistaken(item: &syn::DeriveInput, errors: Errors) -> TokenStream {
         const _: () = {
             type Mistaken = #mistaken;
 
-            impl #p::Declared for #name {
+            impl #p::KernelType for #name {
                 type Twin<__M: #p::Machine> = Mistaken;
 
                 fn same<__M: #p::Machine>(v: Mistaken) -> Mistaken {

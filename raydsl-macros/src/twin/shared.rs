@@ -16,6 +16,23 @@ pub(crate) fn kinds() -> Ident {
     Ident::new("__kinds_by_derive_Type", Span::call_site())
 }
 
+/// Returns the implementation that says of a type that it is one of kernels, whatever bounds say.
+pub(super) fn kernel_type(host: &TokenStream, generics: &Generics) -> TokenStream {
+    let p = private();
+    let Generics { declared, predicates, .. } = generics;
+    quote! {
+        #[diagnostic::do_not_recommend]
+        impl<#declared> #p::KernelType for #host where #predicates {
+            type Twin<__M: #p::Machine> = <Self as #p::Type>::On<__M>;
+
+            #[inline(always)]
+            fn same<__M: #p::Machine>(v: Self::Twin<__M>) -> Self::Twin<__M> {
+                v
+            }
+        }
+    }
+}
+
 /// Returns the implementations of a twin in variables, and of its methods, the same as the host
 /// type's.
 pub(super) fn methods(twin: &TokenStream, host: &TokenStream, generics: &Generics) -> TokenStream {

@@ -3,7 +3,7 @@
 use proc_macro2::{Ident, TokenStream};
 use quote::{ToTokens, format_ident, quote};
 
-use super::shared::{capture, methods};
+use super::shared::{capture, kernel_type, methods};
 use crate::generics::Generics;
 use crate::here::private;
 
@@ -162,16 +162,9 @@ impl<'a> Structure<'a> {
         let (p, host, twin, name) = (private(), &self.host, &self.twin, &self.name);
         let Generics { declared, predicates, .. } = &self.generics;
         let (names, schema, bytes) = (self.names(), self.schema(), self.bytes());
+        let kernel_type = kernel_type(&quote!(#host), &self.generics);
         quote! {
-            #[diagnostic::do_not_recommend]
-            impl<#declared> #p::Declared for #host where #predicates {
-                type Twin<__M: #p::Machine> = <Self as #p::Type>::On<__M>;
-
-                #[inline(always)]
-                fn same<__M: #p::Machine>(v: <Self as #p::Type>::On<__M>) -> <Self as #p::Type>::On<__M> {
-                    v
-                }
-            }
+            #kernel_type
 
             #[diagnostic::do_not_recommend]
             impl<#declared> #p::Type for #host where #predicates {

@@ -11,7 +11,7 @@ use proc_macro2::{Ident, TokenStream};
 use quote::{ToTokens, format_ident, quote};
 use syn::spanned::Spanned;
 
-use super::shared::{capture, kinds};
+use super::shared::{capture, kernel_type, kinds};
 use super::structure::twin_of;
 use super::{bound_parameters, check_types};
 use crate::diag::Errors;
@@ -277,16 +277,9 @@ impl Sum {
         let p = private();
         let (host, data, twin) = (self.host(), self.data_type(), self.twin_type());
         let Generics { declared, predicates, .. } = &self.generics;
+        let kernel_type = kernel_type(&host.to_token_stream(), &self.generics);
         quote! {
-            #[diagnostic::do_not_recommend]
-            impl<#declared> #p::Declared for #host where #predicates {
-                type Twin<__M: #p::Machine> = <Self as #p::Type>::On<__M>;
-
-                #[inline(always)]
-                fn same<__M: #p::Machine>(v: <Self as #p::Type>::On<__M>) -> <Self as #p::Type>::On<__M> {
-                    v
-                }
-            }
+            #kernel_type
 
             #[diagnostic::do_not_recommend]
             impl<#declared> #p::Type for #host where #predicates {

@@ -1,6 +1,6 @@
 //! Sets of an enum's kinds: the numbers of its variants.
 
-use super::{LaneMachine, Machine, Schema, Type, U};
+use super::{LaneMachine, Machine, Schema, Type, U, kernel_type};
 
 /// A set of the kinds of an enum. The last of 64 members stands for all kinds from number 63 on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -69,6 +69,8 @@ impl Kinds {
 #[derive(Clone, Copy, Debug)]
 #[repr(transparent)]
 pub struct Kind<const COUNT: u32>(pub u32);
+
+kernel_type!((const COUNT: u32) Kind<COUNT>);
 
 #[diagnostic::do_not_recommend]
 impl<const COUNT: u32> Type for Kind<COUNT> {

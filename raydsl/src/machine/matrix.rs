@@ -9,7 +9,7 @@ use glam::{Affine3, Mat3, Mat4, Vec3, Vec4};
 use super::vector::Floats;
 use super::{
     F, Field, LaneMachine, Leaves, Machine, OpAdd, OpDiv, OpMul, OpNeg, OpSub, Schema, Type, V3,
-    V4, Value, Varying, declared, op,
+    V4, Value, Varying, kernel_type, op,
 };
 
 macro_rules! columns {
@@ -53,7 +53,7 @@ macro_rules! columns {
             }
         }
 
-        declared!(() $host);
+        kernel_type!(() $host);
 
         impl Type for $host {
             type On<M: Machine> = $twin<M>;

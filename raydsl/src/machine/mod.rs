@@ -112,7 +112,7 @@ pub use schema::{Field, Schema};
 pub(crate) use table::table_view;
 pub use table::{Table, TableView};
 pub use types::Type;
-pub(crate) use types::{Declared, declared};
+pub(crate) use types::{KernelType, kernel_type};
 pub(crate) use value::Floats;
 pub use value::{B, F, I, U, Usize, Value};
 pub use vector::{V2, V3, V4, X2, X3, X4};
@@ -139,7 +139,7 @@ pub mod lifted {
     pub use super::option::{OptionOn, Options, zero_of};
     pub use super::schema::Places;
     pub use super::twin::{Inferred, Twin};
-    pub use super::types::{Declared, LaneMachine, Stated, from_each_lane};
+    pub use super::types::{KernelType, LaneMachine, Stated, from_each_lane};
     pub use super::value::Leaves;
     pub use super::words::{host_of_words, is_kind, of_kind, of_words, to_words, to_words_on};
 }

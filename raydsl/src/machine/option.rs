@@ -6,7 +6,7 @@ use super::ops::{Comparable, OpCompare};
 use super::types::from_each_lane;
 use super::{
     B, Compare, Field, Inferred, LaneMachine, Leaves, Machine, Method, Op, Scalar, Schema, Twin,
-    Type, Value, Varying, declared, index, name,
+    Type, Value, Varying, index, kernel_type, name,
 };
 
 /// Returns a value of the host whose scalars are 0.
@@ -95,7 +95,7 @@ impl<M: Machine, T: Type> Value<M> for OptionOn<M, T> {
     }
 }
 
-declared!((T: Type) Option<T>);
+kernel_type!((T: Type) Option<T>);
 
 #[diagnostic::do_not_recommend]
 impl<T: Type> Type for Option<T> {

@@ -13,7 +13,7 @@ use super::{B, F, Field, I, Machine, Schema, U, Usize, Value, Varying, X2, X3, X
 #[diagnostic::on_unimplemented(
     message = "`{Self}` cannot be used in a kernel",
     label = "not a type that kernels understand",
-    note = "derive it for a struct of such types: #[derive(Clone, Copy, raydsl::Type)]"
+    note = "derive it, if it is made of such types: #[derive(Clone, Copy, raydsl::Type)]"
 )]
 pub trait Type: Copy + Send + Sync + 'static {
     /// The twin: the type of such a value on machine `M`.
@@ -44,7 +44,7 @@ pub trait Type: Copy + Send + Sync + 'static {
     label = "not a type that kernels understand",
     note = "derive it, if it is made of such types: #[derive(Clone, Copy, raydsl::Type)]"
 )]
-pub trait Declared {
+pub trait KernelType {
     /// The same as [`Type::On`].
     type Twin<M: Machine>;
 
@@ -56,21 +56,16 @@ pub trait Declared {
 
 /// [`Type`], as a bound that names a lifetime: rustc reports any other bound that is false where it
 /// stands.
-#[diagnostic::on_unimplemented(
-    message = "`{Self}` cannot be used in a kernel",
-    label = "not a type that kernels understand",
-    note = "derive it, if it is made of such types: #[derive(Clone, Copy, raydsl::Type)]"
-)]
 pub trait Stated<'a>: Type {}
 
 impl<T: Type> Stated<'_> for T {}
 
 /// Declares types of the library, which users may name anew.
-macro_rules! declared {
+macro_rules! kernel_type {
     ($(($($params:tt)*) $host:ty),+ $(,)?) => {
         $(
             #[diagnostic::do_not_recommend]
-            impl<$($params)*> $crate::machine::Declared for $host {
+            impl<$($params)*> $crate::machine::KernelType for $host {
                 type Twin<M: $crate::machine::Machine> = <Self as $crate::Type>::On<M>;
 
                 #[inline(always)]
@@ -82,7 +77,7 @@ macro_rules! declared {
     };
 }
 
-pub(crate) use declared;
+pub(crate) use kernel_type;
 
 /// A machine whose lanes hold numbers: all but the recorder.
 #[expect(missing_docs, reason = "two methods a scalar type")]
@@ -130,7 +125,7 @@ macro_rules! read_scalar {
 
 macro_rules! scalar_type {
     ($host:tt, $twin:ident, $schema:ident, $make:ident, $from:ident, $lane:ident) => {
-        declared!(() $host);
+        kernel_type!(() $host);
 
         #[diagnostic::do_not_recommend]
         impl Type for $host {
@@ -169,7 +164,7 @@ scalar_type!(i32, I, I32, i32, i32_from_fn, i32_lane);
 scalar_type!(u32, U, U32, u32, u32_from_fn, u32_lane);
 scalar_type!(bool, B, Bool, bool, bool_from_fn, bool_lane);
 
-declared!(() usize, () (), (T: Type, const N: usize) [T; N]);
+kernel_type!(() usize, () (), (T: Type, const N: usize) [T; N]);
 
 /// Indexes with 32 bits in a kernel; the upper bits of a host's `usize` are lost.
 #[diagnostic::do_not_recommend]
@@ -210,7 +205,7 @@ macro_rules! vector_type {
         $(vector_type!(@one $twin $n $all $host $element);)+
     };
     (@one $twin:ident $n:literal ($($c:ident)+) $host:ident $element:ident) => {
-        declared!(() $host);
+        kernel_type!(() $host);
 
         #[diagnostic::do_not_recommend]
         impl Type for $host {
@@ -338,7 +333,7 @@ macro_rules! tuple_type {
             );
         }
 
-        declared!(($($name: Type),+) ($($name,)+));
+        kernel_type!(($($name: Type),+) ($($name,)+));
 
         impl<$($name: Type),+> Type for ($($name,)+) {
             type On<M: Machine> = ($($name::On<M>,)+);

@@ -57,7 +57,7 @@ macro_rules! code {
             }
         }
 
-        $crate::machine::declared!(() $name);
+        $crate::machine::kernel_type!(() $name);
 
         impl Type for $name {
             type On<M: Machine> = $twin<M>;
