@@ -3,7 +3,9 @@
 use proc_macro2::TokenStream;
 use quote::quote;
 
+use super::shared::kernel_type;
 use crate::diag::Errors;
+use crate::generics::Generics;
 use crate::here::private;
 use crate::parse;
 
@@ -14,17 +16,12 @@ pub(super) fn mistaken(item: &syn::DeriveInput, errors: Errors) -> TokenStream {
     }
     let (p, name) = (private(), &item.ident);
     let (others, mistaken) = errors.into_type();
+    let kernel_type = kernel_type(&quote!(#name), &Generics::default());
     quote! {
         const _: () = {
             type Mistaken = #mistaken;
 
-            impl #p::KernelType for #name {
-                type Twin<__M: #p::Machine> = Mistaken;
-
-                fn same<__M: #p::Machine>(v: Mistaken) -> Mistaken {
-                    v
-                }
-            }
+            #kernel_type
 
             impl #p::Type for #name {
                 type On<__M: #p::Machine> = Mistaken;
